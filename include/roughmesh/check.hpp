@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Is a moved mesh still valid? Findings with place, value and limit.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "roughmesh/mesh.hpp"
+
+namespace roughmesh {
+
+struct Finding {
+  std::string what;           ///< "inverted tetrahedron", "folded triangle"
+  Tag element = 0;            ///< its number in the file
+  Vec3 place = Vec3::Zero();  ///< centroid in the moved mesh
+  double value = 0;           ///< smallest scaled Jacobian of the element
+  double limit = 0;           ///< value must be above this
+};
+
+/// Result of comparing a moved mesh with the mesh it came from.
+struct MeshCheck {
+  std::int64_t inverted_elements = 0;  ///< a corner Jacobian has another sign than before
+  double min_quality = 1;              ///< smallest scaled Jacobian, 1 for ideal elements, signed
+  std::vector<Finding> findings;       ///< the worst ones first, at most 10
+
+  bool valid() const { return inverted_elements == 0; }
+};
+
+/// Smallest scaled Jacobian (docs/math.md, eq. 17) over the elements of the largest dimension, in
+/// the node order of the file; negative orientation of the file counts as positive. 1 without
+/// elements.
+double min_quality(const Mesh& mesh);
+
+/// Elements of the largest dimension: each keeps the sign of every corner Jacobian that is not zero
+/// in `mesh`. In a surface mesh a face is folded when its normal has turned by more than 90
+/// degrees.
+/// @param moved  n_nodes positions, finite
+/// @throws NumericalError  a coordinate that is not finite
+MeshCheck check_mesh(const Mesh& mesh, std::span<const Vec3> moved);
+
+}  // namespace roughmesh

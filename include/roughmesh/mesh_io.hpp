@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Mesh files: everything but the coordinates of moved nodes comes out as it went in
+// (docs/files.md).
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "roughmesh/error.hpp"
+#include "roughmesh/mesh.hpp"
+
+namespace roughmesh {
+
+/// Reads MSH 2.2 and 4.1 (ASCII, binary, either byte order), STL (ASCII, binary) and PLY2. The kind
+/// of file is told by its content; the extension decides only where the content leaves it open
+/// (PLY2). Corners of an STL at exactly equal positions become one node.
+///
+/// @throws InputError   missing, unreadable, a directory, or of a kind that roughmesh does not read
+/// @throws FormatError  cut short, wrong counts, dangling node numbers, NaN: file, line or byte,
+/// section
+Mesh read_mesh(const std::filesystem::path& path);
+
+/// Values at the nodes of a mesh, for formats that carry them (VTU).
+struct PointField {
+  std::string name;
+  int n_components = 1;
+  std::vector<double> values;  ///< n_nodes * n_components, node by node
+};
+
+/// Writes the mesh. Where the extension of `path` asks for the format the mesh was read from, the
+/// bytes of the source are copied and only the numbers of nodes whose position changed are replaced
+/// (shortest decimals that read back exactly in ASCII files); facet normals of an STL are computed
+/// anew. Only `nodes` may differ from what read_mesh returned. ".vtu" is written from the arrays,
+/// with `fields`.
+///
+/// The file appears whole or not at all: it is written beside `path` and renamed. `path` may be the
+/// file the mesh was read from.
+///
+/// @throws InputError  unknown or unsupported extension, no permission, full disk
+void write_mesh(const Mesh& mesh, const std::filesystem::path& path,
+                const std::vector<PointField>& fields = {});
+
+/// Writes text the same way: whole or not at all. For reports beside meshes.
+void write_text(const std::string& text, const std::filesystem::path& path);
+
+/// Largest distance between neighbouring numbers of the source's number format at the coordinates
+/// of the mesh: 2^-23 of a coordinate's binade for binary STL, 2^-52 otherwise. A length.
+double coordinate_spacing(const Mesh& mesh);
+
+/// Removes what an unfinished write_mesh or write_text left beside its path. Async-signal-safe: for
+/// the handler of an interrupt, after which the process must end.
+void discard_unfinished_files() noexcept;
+
+}  // namespace roughmesh

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What roughness a mesh can carry, known before anything is computed.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "roughmesh/autocorrelation.hpp"
+#include "roughmesh/distance.hpp"
+#include "roughmesh/surface.hpp"
+
+namespace roughmesh {
+
+/// How well the linear interpolant on the mesh follows a field of unit rms height, and how large
+/// the heights may be. Formulas: docs/math.md, section "Resolution".
+struct Resolution {
+  double mesh_size = 0;              ///< h, the median edge
+  std::array<double, 3> lengths{};   ///< correlation length along each axis; equal when isotropic
+  std::array<double, 3> h_over_l{};  ///< the rule of the method's source: at most 1 / 2.5
+  double spectrum_share_above_nyquist =
+      0;  ///< share of the variance above pi / h, worst axis, two-dimensional
+  double interpolation_error = 0;     ///< rms at mid-edge over Rq, worst axis
+  double rms_slope = 0;               ///< of the linear interpolant on this mesh, times 1 / Rq
+  std::optional<double> field_slope;  ///< of the field itself, times 1 / Rq, where it exists
+  double expected_max_height =
+      0;  ///< of one realization over Rq, by the number of independent patches
+  double min_curvature_radius =
+      0;                       ///< smallest local radius of curvature; infinite for flat surfaces
+  double largest_safe_rq = 0;  ///< min_curvature_radius / expected_max_height; infinite when flat
+};
+
+/// @param rq_free  everything in the result is per unit of Rq or independent of it
+Resolution assess_resolution(const Surface& surface, const Autocorrelation& autocorrelation,
+                             const Distance& distance);
+
+/// One line for each limit that rms roughness `rq` on this surface passes: coarse mesh, rough
+/// spectrum, heights beyond the radius of curvature. Empty when all is well.
+std::vector<std::string> resolution_warnings(const Resolution& resolution, double rq);
+
+}  // namespace roughmesh

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The surface that becomes rough: faces, field points, normals, areas.
+#pragma once
+
+#include <numbers>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "roughmesh/error.hpp"
+#include "roughmesh/mesh.hpp"
+
+namespace roughmesh {
+
+struct SurfaceOptions {
+  /// Names or numbers of physical groups of dimension 2, or "all". Empty: the only such group; the
+  /// whole boundary of a volume mesh (or the whole surface mesh) that has none.
+  std::vector<std::string> groups;
+  bool flip = false;  ///< turn every normal round
+  /// Edges whose two face normals enclose more than this count as sharp, in radians.
+  double sharp_angle = 40.0 / 180.0 * std::numbers::pi;
+};
+
+/// Smallest, median and largest edge length of the selected faces.
+struct MeshSize {
+  double min = 0, median = 0, max = 0;
+};
+
+/// Triangles and quadrangles of the chosen groups, on *field points*. Nodes at equal positions are
+/// one point, and points stand in canonical order (docs/math.md, section "Points"): by position,
+/// whatever numbers and order the file has. All that is random or computed on the surface is
+/// indexed by point.
+struct Surface {
+  std::vector<Vec3> points;          ///< n positions, canonical order
+  std::vector<Vec3> normals;         ///< n unit vectors, outward (docs/math.md, eq. 2)
+  std::vector<double> areas;         ///< n node areas; they add up to `area`
+  std::vector<Index> nodes;          ///< m >= n mesh nodes on the surface, ascending
+  std::vector<Index> point_of_node;  ///< m points, in the order of `nodes`
+
+  std::vector<Index> face_offsets;  ///< n_faces + 1 positions in face_points
+  std::vector<Index> face_points;   ///< corners of each face, oriented along the normals
+  std::vector<Tag>
+      face_tags;  ///< n_faces element numbers in the file; 0 for a derived boundary face
+
+  double area = 0;
+  MeshSize mesh_size;               ///< h is mesh_size.median
+  Index n_components = 0;           ///< pieces connected through edges
+  Index n_border_edges = 0;         ///< edges of one face; 0 for a closed surface
+  Index n_nonmanifold_edges = 0;    ///< edges of three and more faces
+  Index n_sharp_edges = 0;          ///< edges beyond SurfaceOptions::sharp_angle
+  Index n_duplicate_faces = 0;      ///< faces on the same points as an earlier one; counted once
+  std::vector<std::string> groups;  ///< what was selected, for the report
+
+  Index n_points() const { return static_cast<Index>(points.size()); }
+  Index n_faces() const { return static_cast<Index>(face_tags.size()); }
+  std::span<const Index> face(Index i) const {
+    const auto f = static_cast<std::size_t>(i);
+    return {face_points.data() + face_offsets[f],
+            static_cast<std::size_t>(face_offsets[f + 1] - face_offsets[f])};
+  }
+};
+
+/// Selects and orients the faces. Orientation is made consistent over each piece that is connected
+/// through edges of two faces. A closed piece is turned outward (positive enclosed volume); an open
+/// piece between two volumes points out of the one with the lower entity number; any other open
+/// piece keeps the orientation of its first face in the file. `flip` turns the result. Normals use
+/// the weights of N. Max (1999), J. Graphics Tools 4(2):1-6, doi:10.1080/10867651.1999.10487501.
+///
+/// @throws InputError  unknown group, group of another dimension, no surface, several groups and
+/// none
+///                     chosen (lists them), one-sided (unorientable) surface, elements of order
+///                     above 1, a point all of whose faces have no area
+Surface select_surface(const Mesh& mesh, const SurfaceOptions& options = {});
+
+/// Area vector of a polygon with these corner positions: its length is the area of a flat face, its
+/// direction the right-hand normal.
+Vec3 area_vector(std::span<const Vec3> corners);
+
+/// The points of the surface moved by one vector each, n of them; faces and all else stay.
+std::vector<Vec3> moved_points(const Surface& surface, std::span<const Vec3> displacements);
+
+/// Volume enclosed by the faces at the given point positions (n of them); for a closed surface,
+/// independent of the origin.
+double enclosed_volume(const Surface& surface, std::span<const Vec3> positions);
+
+}  // namespace roughmesh

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Threads: the only file that knows them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+namespace roughmesh::detail {
+
+/// Calls body(begin, end) on disjoint ranges that cover [0, n), on several threads. The ranges
+/// depend on n and grain only, never on the number of threads, so that a sum per range is the same
+/// on any of them.
+void parallel_for(std::size_t n, std::size_t grain,
+                  const std::function<void(std::size_t begin, std::size_t end)>& body);
+
+/// Threads of parallel_for and of the linear algebra library while it lives; 0 means one per core.
+class ThreadLimit {
+ public:
+  explicit ThreadLimit(int n_threads);
+  ~ThreadLimit();
+  ThreadLimit(const ThreadLimit&) = delete;
+  ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+  int n_threads() const { return n_threads_; }
+
+ private:
+  struct Limits;
+  int n_threads_ = 0;
+  std::unique_ptr<Limits> limits_;
+};
+
+}  // namespace roughmesh::detail
