@@ -69,6 +69,7 @@ TEST(Includes, NoHeaderOfAGplLibraryIsUsed) {
       R"(#\s*include\s*[<"](fftw|gsl/|umfpack|cholmod|SuiteSparseQR|ceres/|gmsh|CGAL/(Surface_mesh|Polyhedron|AABB|Polygon_mesh_processing)))");
   for (const std::string folder : {"src", "include", "app", "tests", "benchmarks"})
     for (const auto& entry : std::filesystem::recursive_directory_iterator(source_dir() / folder))
-      if (entry.is_regular_file() && entry.path() != __FILE__)
+      if (entry.is_regular_file() && entry.path() != __FILE__) {
         EXPECT_FALSE(std::regex_search(text_of(entry.path()), gpl)) << entry.path();
+      }
 }
