@@ -18,27 +18,22 @@ namespace {
 
 using namespace roughmesh;
 
-enum ExitCode {
-  done = 0,
-  check_failed = 1,
-  bad_input = 2,
-  bad_format = 3,
-  numerical = 4,
-  interrupted = 130
-};
+enum ExitCode { done = 0, check_failed = 1, bad_input = 2, bad_format = 3, numerical = 4 };
 
-// Only async-signal-safe calls: finished files stay, the one being written goes.
-extern "C" void on_interrupt(int) {
+// Only async-signal-safe calls: finished files stay, the one being written goes. The shell's
+// convention makes an interrupt exit code 130.
+extern "C" void on_interrupt(int signal_number) {
   discard_unfinished_files();
   const char message[] =
       "roughmesh: interrupted; finished realizations are kept, go on with --first\n";
   [[maybe_unused]] const auto written = write(STDERR_FILENO, message, sizeof message - 1);
-  _exit(interrupted);
+  _exit(128 + signal_number);
 }
 
 void handle_signals() {
-  for (const int signal_number : {SIGINT, SIGTERM, SIGHUP})
-    std::signal(signal_number, on_interrupt);
+  for (const int signal_number : {SIGINT, SIGTERM}) std::signal(signal_number, on_interrupt);
+  // Under nohup a hang-up stays ignored.
+  if (std::signal(SIGHUP, on_interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   // Closed pipes and file size limits are reported by the failing write instead.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
