@@ -13,8 +13,9 @@
 namespace roughmesh {
 
 struct SurfaceOptions {
-  /// Names or numbers of physical groups of dimension 2, or "all". Empty: the only such group; the
-  /// whole boundary of a volume mesh (or the whole surface mesh) that has none.
+  /// Names or numbers of physical groups of dimension 2 (an exact name goes before a number), or
+  /// "all": every element of dimension 2, the whole boundary where there are none. Empty: the only
+  /// such group; the whole boundary of a volume mesh (or the whole surface mesh) that has none.
   std::vector<std::string> groups;
   bool flip = false;  ///< turn every normal round
   /// Edges whose two face normals enclose more than this count as sharp, in radians.
@@ -31,14 +32,18 @@ struct MeshSize {
 /// whatever numbers and order the file has. All that is random or computed on the surface is
 /// indexed by point.
 struct Surface {
-  std::vector<Vec3> points;          ///< n positions, canonical order
-  std::vector<Vec3> normals;         ///< n unit vectors, outward (docs/math.md, eq. 2)
-  std::vector<double> areas;         ///< n node areas; they add up to `area`
-  std::vector<Index> nodes;          ///< m >= n mesh nodes on the surface, ascending
+  std::vector<Vec3> points;   ///< n positions, canonical order
+  std::vector<Vec3> normals;  ///< n unit vectors, outward (docs/math.md, eq. 2)
+  std::vector<double> areas;  ///< n node areas; they add up to `area`
+  /// m >= n mesh nodes at the positions of the points, ascending; also those that no selected face
+  /// uses, as on the far side of a crack.
+  std::vector<Index> nodes;
   std::vector<Index> point_of_node;  ///< m points, in the order of `nodes`
 
-  std::vector<Index> face_offsets;  ///< n_faces + 1 positions in face_points
-  std::vector<Index> face_points;   ///< corners of each face, oriented along the normals
+  /// n_faces + 1 positions in face_points. Faces stand in the order of their sorted points, which
+  /// depends on positions only; a face with fewer than three distinct points is left out.
+  std::vector<Index> face_offsets;
+  std::vector<Index> face_points;  ///< corners of each face, oriented along the normals
   std::vector<Tag>
       face_tags;  ///< n_faces element numbers in the file; 0 for a derived boundary face
 
@@ -67,9 +72,9 @@ struct Surface {
 /// the weights of N. Max (1999), J. Graphics Tools 4(2):1-6, doi:10.1080/10867651.1999.10487501.
 ///
 /// @throws InputError  unknown group, group of another dimension, no surface, several groups and
-/// none
-///                     chosen (lists them), one-sided (unorientable) surface, elements of order
-///                     above 1, a point all of whose faces have no area
+///                     none chosen (lists them), one-sided (unorientable) surface, elements of
+///                     order above 1, a point all of whose faces have no area, sharp_angle outside
+///                     [0, pi]
 Surface select_surface(const Mesh& mesh, const SurfaceOptions& options = {});
 
 /// Area vector of a polygon with these corner positions: its length is the area of a flat face, its
@@ -79,8 +84,8 @@ Vec3 area_vector(std::span<const Vec3> corners);
 /// The points of the surface moved by one vector each, n of them; faces and all else stay.
 std::vector<Vec3> moved_points(const Surface& surface, std::span<const Vec3> displacements);
 
-/// Volume enclosed by the faces at the given point positions (n of them); for a closed surface,
-/// independent of the origin.
+/// Volume enclosed by the faces at the given point positions (n of them); for an open surface, that
+/// of the cones from the mean position. Of a quadrangle, mean over its two splittings.
 double enclosed_volume(const Surface& surface, std::span<const Vec3> positions);
 
 }  // namespace roughmesh

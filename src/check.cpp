@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "roughmesh/check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "roughmesh/error.hpp"
+#include "roughmesh/surface.hpp"
+
+#include "corners.hpp"
+#include "messages.hpp"
+#include "parallel.hpp"
+
+namespace roughmesh {
+namespace {
+
+constexpr std::size_t most_findings = 10;
+// Below this the sign of a corner Jacobian is round-off, and there is nothing to keep.
+constexpr double zero_jacobian = 1e-14;
+
+// Scaled Jacobians at the corners of one element (docs/math.md, eq. 17): the determinant of the
+// three edge vectors that leave a corner (in a face: the component of the product of two along the
+// normal), over their lengths, over the same for the ideal element.
+struct CornerJacobians {
+  std::array<double, 8> values{};
+  std::size_t n = 0;
+
+  void add(double value) { values[n++] = value; }
+  double sum() const {
+    double total = 0;
+    for (std::size_t i = 0; i < n; ++i) total += values[i];
+    return total;
+  }
+};
+
+// One over the unscaled value of the ideal element: regular tetrahedron; cube; right prism on an
+// equilateral triangle; pyramid of equilateral triangles on a square; equilateral triangle; square.
+double ideal_factor(ElementShape shape) {
+  switch (shape) {
+    case ElementShape::tetrahedron:
+    case ElementShape::pyramid:
+      return std::numbers::sqrt2;
+    case ElementShape::prism:
+    case ElementShape::triangle:
+      return 2 / std::numbers::sqrt3;
+    default:
+      return 1;
+  }
+}
+
+double ratio(double determinant, double lengths) { return lengths > 0 ? determinant / lengths : 0; }
+
+CornerJacobians volume_jacobians(ElementShape shape, std::span<const Index> nodes,
+                                 std::span<const Vec3> positions) {
+  CornerJacobians result;
+  const double factor = ideal_factor(shape);
+  for (const detail::CornerTetrahedron& corner : detail::corner_tetrahedra(shape)) {
+    const Vec3& x = positions[nodes[corner[0]]];
+    const Vec3 a = positions[nodes[corner[1]]] - x;
+    const Vec3 b = positions[nodes[corner[2]]] - x;
+    const Vec3 c = positions[nodes[corner[3]]] - x;
+    result.add(factor * ratio(a.cross(b).dot(c), a.norm() * b.norm() * c.norm()));
+  }
+  return result;
+}
+
+Vec3 face_vector(std::span<const Index> nodes, std::span<const Vec3> positions) {
+  std::array<Vec3, 4> corners;
+  for (std::size_t k = 0; k < nodes.size(); ++k) corners[k] = positions[nodes[k]];
+  return area_vector({corners.data(), nodes.size()});
+}
+
+// Corners as seen from the side from which the face at its original place runs counter-clockwise:
+// negative where it has turned over.
+CornerJacobians face_jacobians(ElementShape shape, std::span<const Index> nodes,
+                               std::span<const Vec3> positions, std::span<const Vec3> original) {
+  CornerJacobians result;
+  Vec3 normal = face_vector(nodes, positions).stableNormalized();
+  if (normal.dot(face_vector(nodes, original)) < 0) normal = -normal;
+  const double factor = ideal_factor(shape);
+  const std::size_t n = nodes.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vec3& x = positions[nodes[k]];
+    const Vec3 next = positions[nodes[(k + 1) % n]] - x;
+    const Vec3 previous = positions[nodes[(k + n - 1) % n]] - x;
+    result.add(factor * ratio(next.cross(previous).dot(normal), next.norm() * previous.norm()));
+  }
+  return result;
+}
+
+// The corners of one block, before and after.
+struct BlockView {
+  const ElementBlock& block;
+  std::span<const Vec3> original;
+  std::span<const Vec3> moved;
+
+  std::span<const Index> corners(Index element) const {
+    const auto n = static_cast<std::size_t>(n_corners(block.type.shape));
+    return block.element(element).first(n);
+  }
+  CornerJacobians jacobians(Index element, std::span<const Vec3> positions) const {
+    const ElementShape shape = block.type.shape;
+    if (dimension(shape) == 3) return volume_jacobians(shape, corners(element), positions);
+    return face_jacobians(shape, corners(element), positions, original);
+  }
+};
+
+struct ElementResult {
+  double quality = 1;
+  bool inverted = false;
+};
+
+// A corner that has no sign in the input cannot lose it; an element whose corners point both ways
+// there counts as oriented like most of it.
+ElementResult compare(const BlockView& view, Index element) {
+  const CornerJacobians before = view.jacobians(element, view.original);
+  const CornerJacobians after = view.jacobians(element, view.moved);
+  const double orientation = before.sum() < 0 ? -1 : 1;
+  ElementResult result{std::numeric_limits<double>::infinity(), false};
+  for (std::size_t i = 0; i < before.n; ++i) {
+    result.quality = std::min(result.quality, orientation * after.values[i]);
+    const bool has_sign = std::abs(before.values[i]) > zero_jacobian;
+    const bool keeps_sign =
+        std::signbit(before.values[i]) == std::signbit(after.values[i]) && after.values[i] != 0;
+    if (has_sign && !keeps_sign) result.inverted = true;
+  }
+  return result;
+}
+
+struct Bad {
+  double value;
+  Tag tag;
+  std::size_t block;
+  Index element;
+
+  friend bool operator<(const Bad& a, const Bad& b) {
+    return a.value != b.value ? a.value < b.value : a.tag < b.tag;
+  }
+};
+
+struct Summary {
+  std::int64_t n_inverted = 0;
+  double min_quality = 1;
+  std::vector<Bad> worst;  // ascending, at most most_findings
+
+  void keep_worst() {
+    std::stable_sort(worst.begin(), worst.end());
+    if (worst.size() > most_findings) worst.resize(most_findings);
+  }
+  void add(const Summary& other) {
+    n_inverted += other.n_inverted;
+    min_quality = std::min(min_quality, other.min_quality);
+    worst.insert(worst.end(), other.worst.begin(), other.worst.end());
+    keep_worst();
+  }
+};
+
+Summary summarize_range(const BlockView& view, std::size_t block, std::size_t begin,
+                        std::size_t end) {
+  Summary summary;
+  for (std::size_t i = begin; i < end; ++i) {
+    const auto element = static_cast<Index>(i);
+    const ElementResult result = compare(view, element);
+    summary.min_quality = std::min(summary.min_quality, result.quality);
+    if (!result.inverted) continue;
+    ++summary.n_inverted;
+    summary.worst.push_back({result.quality, view.block.tags[i], block, element});
+  }
+  summary.keep_worst();
+  return summary;
+}
+
+Summary summarize(const Mesh& mesh, std::span<const Vec3> moved) {
+  constexpr std::size_t grain = 2048;
+  const int dim = dimension(mesh);
+  Summary total;
+  for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
+    const BlockView view{mesh.blocks[b], mesh.nodes, moved};
+    if (dim < 2 || dimension(view.block.type.shape) != dim) continue;
+    const std::size_t n = view.block.tags.size();
+    std::vector<Summary> parts((n + grain - 1) / grain);
+    detail::parallel_for(n, grain, [&](std::size_t begin, std::size_t end) {
+      parts[begin / grain] = summarize_range(view, b, begin, end);
+    });
+    for (const Summary& part : parts) total.add(part);
+  }
+  return total;
+}
+
+Finding make_finding(const BlockView& view, const Bad& bad) {
+  Vec3 centre = Vec3::Zero();
+  const auto corners = view.corners(bad.element);
+  for (const Index node : corners) centre += view.moved[node];
+  const char* what = dimension(view.block.type.shape) == 3 ? "inverted" : "folded";
+  return {fmt::format("{} {}", what, name(view.block.type)), bad.tag,
+          centre / static_cast<double>(corners.size()), bad.value, 0.0};
+}
+
+void check_positions(const Mesh& mesh, std::span<const Vec3> moved) {
+  if (moved.size() != mesh.nodes.size())
+    throw InputError(fmt::format("{} positions for a mesh of {} nodes; give one per node",
+                                 moved.size(), mesh.nodes.size()));
+  for (std::size_t node = 0; node < moved.size(); ++node)
+    if (!moved[node].allFinite())
+      throw NumericalError(
+          fmt::format("node {} moved from {} to a position that is not finite; lower the heights",
+                      mesh.node_tags[node], detail::place(mesh.nodes[node])));
+}
+
+}  // namespace
+
+double min_quality(const Mesh& mesh) { return summarize(mesh, mesh.nodes).min_quality; }
+
+MeshCheck check_mesh(const Mesh& mesh, std::span<const Vec3> moved) {
+  check_positions(mesh, moved);
+  const Summary summary = summarize(mesh, moved);
+  MeshCheck check{summary.n_inverted, summary.min_quality, {}};
+  for (const Bad& bad : summary.worst)
+    check.findings.push_back(make_finding({mesh.blocks[bad.block], mesh.nodes, moved}, bad));
+  return check;
+}
+
+}  // namespace roughmesh

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include <Eigen/IterativeLinearSolvers>
+#include <fmt/format.h>
+
+#include "roughmesh/error.hpp"
+
+#include "corners.hpp"
+#include "parallel.hpp"
+
+namespace roughmesh::detail {
+namespace {
+
+constexpr double tolerance = 1e-12;  // relative residual
+constexpr int most_iterations = 10'000;
+constexpr std::size_t rows_per_range = 1024;
+// Six volumes over the cube of the longest edge, below which a tetrahedron is left out.
+constexpr double flat = 1e-10;
+
+using Solver = Eigen::ConjugateGradient<HarmonicExtension::Matrix, Eigen::Lower | Eigen::Upper,
+                                        Eigen::DiagonalPreconditioner<double>>;
+
+// Gradients of the four linear shape functions.
+struct Gradients {
+  std::array<Vec3, 4> of_corner;
+  bool is_flat = false;
+};
+
+Gradients gradients(std::span<const Vec3> nodes, const Tetrahedron& t) {
+  const Vec3 a = nodes[t[1]] - nodes[t[0]];
+  const Vec3 b = nodes[t[2]] - nodes[t[0]];
+  const Vec3 c = nodes[t[3]] - nodes[t[0]];
+  const double det = a.cross(b).dot(c);
+  const double longest =
+      std::sqrt(std::max({a.squaredNorm(), b.squaredNorm(), c.squaredNorm(), (b - a).squaredNorm(),
+                          (c - b).squaredNorm(), (a - c).squaredNorm()}));
+  Gradients g;
+  g.is_flat = !(std::abs(det) > flat * longest * longest * longest);
+  if (g.is_flat) return g;
+  g.of_corner[1] = b.cross(c) / det;
+  g.of_corner[2] = c.cross(a) / det;
+  g.of_corner[3] = a.cross(b) / det;
+  g.of_corner[0] = -(g.of_corner[1] + g.of_corner[2] + g.of_corner[3]);
+  return g;
+}
+
+// Only the ratio of weights matters; relative to the mean volume they suit any unit of length.
+double mean_volume(std::span<const Vec3> nodes, std::span<const Tetrahedron> tetrahedra) {
+  double sum = 0;
+  for (const Tetrahedron& t : tetrahedra)
+    sum += std::abs(determinant(nodes[t[0]], nodes[t[1]], nodes[t[2]], nodes[t[3]])) / 6;
+  return tetrahedra.empty() ? 1 : sum / static_cast<double>(tetrahedra.size());
+}
+
+// Tetrahedra at each unknown, in ascending order.
+struct Adjacency {
+  std::vector<std::size_t> offsets;
+  std::vector<Index> tetrahedra;
+
+  std::span<const Index> at(std::size_t unknown) const {
+    return {tetrahedra.data() + offsets[unknown], offsets[unknown + 1] - offsets[unknown]};
+  }
+};
+
+template <class Visit>
+void for_each_unknown(std::span<const Tetrahedron> tetrahedra, const NodeRoles& roles,
+                      Visit&& visit) {
+  for (std::size_t t = 0; t < tetrahedra.size(); ++t)
+    for (const Index node : tetrahedra[t])
+      if (roles.unknown[node] >= 0) visit(static_cast<Index>(t), roles.unknown[node]);
+}
+
+Adjacency make_adjacency(std::span<const Tetrahedron> tetrahedra, const NodeRoles& roles) {
+  Adjacency adjacency;
+  auto& offsets = adjacency.offsets;
+  offsets.assign(static_cast<std::size_t>(roles.n_unknown) + 1, 0);
+  for_each_unknown(tetrahedra, roles, [&](Index, Index unknown) { ++offsets[unknown + 1]; });
+  for (std::size_t i = 1; i < offsets.size(); ++i) offsets[i] += offsets[i - 1];
+  adjacency.tetrahedra.resize(offsets.back());
+  std::vector<std::size_t> next(offsets.begin(), offsets.end() - 1);
+  for_each_unknown(tetrahedra, roles,
+                   [&](Index t, Index unknown) { adjacency.tetrahedra[next[unknown]++] = t; });
+  return adjacency;
+}
+
+struct Entry {
+  Index column;
+  double value;
+};
+
+// A row under construction: some fifteen columns, where a search from the start beats any index.
+class Row {
+ public:
+  void clear() { entries_.clear(); }
+  void add(Index column, double value) {
+    const auto at = std::find_if(entries_.begin(), entries_.end(),
+                                 [&](const Entry& e) { return e.column == column; });
+    if (at == entries_.end())
+      entries_.push_back({column, value});
+    else
+      at->value += value;
+  }
+  std::span<const Entry> sorted() {
+    std::sort(entries_.begin(), entries_.end(),
+              [](const Entry& a, const Entry& b) { return a.column < b.column; });
+    return entries_;
+  }
+
+ private:
+  std::vector<Entry> entries_;
+};
+
+// Consecutive rows of a matrix.
+struct RowRange {
+  std::vector<Index> sizes;
+  std::vector<Index> columns;
+  std::vector<double> values;
+
+  void append(std::span<const Entry> row) {
+    sizes.push_back(static_cast<Index>(row.size()));
+    for (const Entry& entry : row) {
+      columns.push_back(entry.column);
+      values.push_back(entry.value);
+    }
+  }
+};
+
+HarmonicExtension::Matrix join(const std::vector<RowRange>& ranges, Index n_rows, Index n_columns) {
+  HarmonicExtension::Matrix matrix(n_rows, n_columns);
+  Index* offsets = matrix.outerIndexPtr();
+  std::size_t row = 0;
+  for (const RowRange& range : ranges)
+    for (const Index size : range.sizes) {
+      offsets[row + 1] = offsets[row] + size;
+      ++row;
+    }
+  matrix.resizeNonZeros(offsets[n_rows]);
+  parallel_for(ranges.size(), 1, [&](std::size_t begin, std::size_t) {
+    const Index first = offsets[begin * rows_per_range];
+    std::copy(ranges[begin].columns.begin(), ranges[begin].columns.end(),
+              matrix.innerIndexPtr() + first);
+    std::copy(ranges[begin].values.begin(), ranges[begin].values.end(), matrix.valuePtr() + first);
+  });
+  return matrix;
+}
+
+// Builds each row from the tetrahedra around its unknown: no two threads write to one number, and
+// the order of every sum is that of the tetrahedra.
+class Assembly {
+ public:
+  Assembly(std::span<const Vec3> nodes, std::span<const Tetrahedron> tetrahedra,
+           const NodeRoles& roles)
+      : nodes_(nodes),
+        tetrahedra_(tetrahedra),
+        roles_(roles),
+        adjacency_(make_adjacency(tetrahedra, roles)),
+        scale_(mean_volume(nodes, tetrahedra)) {}
+
+  void rows(std::size_t begin, std::size_t end, RowRange& stiffness, RowRange& coupling) const {
+    Row unknown, given;
+    for (std::size_t i = begin; i < end; ++i) {
+      unknown.clear();
+      given.clear();
+      const double diagonal = add_tetrahedra(static_cast<Index>(i), unknown, given);
+      // An unknown without a tetrahedron gets the equation u = 0.
+      unknown.add(static_cast<Index>(i), diagonal > 0 ? diagonal : 1);
+      stiffness.append(unknown.sorted());
+      coupling.append(given.sorted());
+    }
+  }
+
+ private:
+  // Returns the diagonal entry.
+  double add_tetrahedra(Index i, Row& unknown, Row& given) const {
+    double diagonal = 0;
+    for (const Index number : adjacency_.at(static_cast<std::size_t>(i))) {
+      const Tetrahedron& t = tetrahedra_[number];
+      const Gradients g = gradients(nodes_, t);
+      if (g.is_flat) continue;
+      std::size_t own = 0;
+      while (roles_.unknown[t[own]] != i) ++own;
+      diagonal += scale_ * g.of_corner[own].squaredNorm();
+      for (std::size_t k = 0; k < 4; ++k) {
+        if (k == own) continue;
+        const double value = scale_ * g.of_corner[own].dot(g.of_corner[k]);
+        if (roles_.unknown[t[k]] >= 0)
+          unknown.add(roles_.unknown[t[k]], value);
+        else if (roles_.given[t[k]] >= 0)
+          given.add(roles_.given[t[k]], value);
+      }
+    }
+    return diagonal;
+  }
+
+  std::span<const Vec3> nodes_;
+  std::span<const Tetrahedron> tetrahedra_;
+  const NodeRoles& roles_;
+  Adjacency adjacency_;
+  double scale_;
+};
+
+void require_convergence(const Solver& solver) {
+  if (solver.info() == Eigen::Success) return;
+  throw NumericalError(fmt::format(
+      "conjugate gradients for the volume stopped after {} iterations at a relative residual of "
+      "{:.1e}, above {:.0e}; improve the worst elements of the input mesh",
+      solver.iterations(), solver.error(), tolerance));
+}
+
+}  // namespace
+
+HarmonicExtension::HarmonicExtension(std::span<const Vec3> nodes,
+                                     std::span<const Tetrahedron> tetrahedra,
+                                     const NodeRoles& roles) {
+  const Assembly assembly(nodes, tetrahedra, roles);
+  const auto n = static_cast<std::size_t>(roles.n_unknown);
+  std::vector<RowRange> stiffness((n + rows_per_range - 1) / rows_per_range);
+  std::vector<RowRange> coupling(stiffness.size());
+  parallel_for(n, rows_per_range, [&](std::size_t begin, std::size_t end) {
+    const std::size_t range = begin / rows_per_range;
+    assembly.rows(begin, end, stiffness[range], coupling[range]);
+  });
+  stiffness_ = join(stiffness, roles.n_unknown, roles.n_unknown);
+  coupling_ = join(coupling, roles.n_unknown, roles.n_given);
+}
+
+std::vector<Vec3> HarmonicExtension::extend(std::span<const Vec3> given) const {
+  std::vector<Vec3> result(static_cast<std::size_t>(stiffness_.rows()));
+  if (result.empty()) return result;
+  parallel_for(3, 1, [&](std::size_t axis, std::size_t) {
+    Eigen::VectorXd component(static_cast<Eigen::Index>(given.size()));
+    for (std::size_t i = 0; i < given.size(); ++i) component[i] = given[i][axis];
+    Solver solver;
+    solver.setTolerance(tolerance);
+    solver.setMaxIterations(most_iterations);
+    solver.compute(stiffness_);
+    const Eigen::VectorXd load = -(coupling_ * component);
+    const Eigen::VectorXd solution = solver.solve(load);
+    require_convergence(solver);
+    for (std::size_t i = 0; i < result.size(); ++i) result[i][axis] = solution[i];
+  });
+  return result;
+}
+
+}  // namespace roughmesh::detail

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Weighted harmonic extension: given displacements at some nodes, the smoothest ones at others.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include <Eigen/SparseCore>
+
+#include "roughmesh/mesh.hpp"
+
+namespace roughmesh::detail {
+
+using Tetrahedron = std::array<Index, 4>;  ///< positions in an array of nodes
+
+/// What is known about the displacement of each node. A node is unknown, given or, if neither
+/// number is set, stays where it is.
+struct NodeRoles {
+  std::vector<Index> unknown;  ///< per node: number of its unknown, or -1
+  std::vector<Index> given;    ///< per node: number of its given displacement, or -1
+  Index n_unknown = 0;
+  Index n_given = 0;
+};
+
+/// Minimizes, for each component of the displacement u,
+///
+///     sum over tetrahedra of  1/V * integral |grad u|^2            (docs/math.md, eq. 16)
+///
+/// with u linear on each tetrahedron, so that small tetrahedra deform least.
+class HarmonicExtension {
+ public:
+  /// Nearly flat tetrahedra, whose weight would drown all others, are left out; an unknown that
+  /// has no other tetrahedron stays.
+  HarmonicExtension(std::span<const Vec3> nodes, std::span<const Tetrahedron> tetrahedra,
+                    const NodeRoles& roles);
+
+  /// @param given  n_given displacements, finite
+  /// @return       n_unknown displacements; the same bits on any number of threads
+  /// @throws NumericalError  conjugate gradients did not converge
+  std::vector<Vec3> extend(std::span<const Vec3> given) const;
+
+  using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+  const Matrix& stiffness() const { return stiffness_; }  ///< symmetric, positive definite
+
+ private:
+  Matrix stiffness_;  // unknown by unknown
+  Matrix coupling_;   // unknown by given
+};
+
+}  // namespace roughmesh::detail

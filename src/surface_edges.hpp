@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Edges of a surface and the faces that meet there.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "surface_faces.hpp"
+
+namespace roughmesh::detail {
+
+/// A face at an edge.
+struct Side {
+  Index face = 0;
+  bool forward = false;  ///< the face runs along the edge from its smaller to its larger point
+};
+
+struct EdgeTable {
+  std::vector<std::array<Index, 2>> points;  ///< n pairs, smaller first, in ascending order
+  std::vector<Index> offsets = {0};          ///< n + 1 positions in sides
+  std::vector<Side> sides;                   ///< of each edge, in the order of the faces
+  std::vector<Index> edge_of_corner;  ///< for each of faces.corners, the edge that starts there
+
+  Index size() const { return static_cast<Index>(points.size()); }
+  std::span<const Side> edge(Index i) const {
+    return {sides.data() + offsets[i], static_cast<std::size_t>(offsets[i + 1] - offsets[i])};
+  }
+};
+
+EdgeTable make_edges(const Faces& faces, Index n_points);
+
+}  // namespace roughmesh::detail

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "surface_measures.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "messages.hpp"
+#include "polygon.hpp"
+
+namespace roughmesh::detail {
+namespace {
+
+// A sum of vectors that has lost twelve digits to cancellation has no direction worth using.
+constexpr double least_sum = 1e-12;
+// Area over the square of the longest edge below which a face counts as having none.
+constexpr double least_area = 1e-14;
+
+// A sum of vectors and of their lengths.
+struct VectorSum {
+  Vec3 sum = Vec3::Zero();
+  double magnitude = 0;
+
+  void add(const Vec3& v) {
+    sum += v;
+    magnitude += v.norm();
+  }
+  bool has_direction() const { return sum.norm() > least_sum * magnitude; }
+};
+
+// Contribution of one corner with the edges that leave it, next and previous (docs/math.md, eq. 2).
+Vec3 max_weighted_normal(const Vec3& next, const Vec3& previous) {
+  const double squares = next.squaredNorm() * previous.squaredNorm();
+  return squares > 0 ? Vec3(next.cross(previous) / squares) : Vec3::Zero();
+}
+
+std::vector<VectorSum> max_sums(const Surface& surface) {
+  std::vector<VectorSum> sums(surface.points.size());
+  for (Index f = 0; f < surface.n_faces(); ++f) {
+    const auto face = surface.face(f);
+    const std::size_t n = face.size();
+    for (std::size_t k = 0; k < n; ++k) {
+      const Vec3& x = surface.points[face[k]];
+      sums[face[k]].add(max_weighted_normal(surface.points[face[(k + 1) % n]] - x,
+                                            surface.points[face[(k + n - 1) % n]] - x));
+    }
+  }
+  return sums;
+}
+
+std::vector<VectorSum> area_sums(const Surface& surface) {
+  std::vector<VectorSum> sums(surface.points.size());
+  for (Index f = 0; f < surface.n_faces(); ++f) {
+    const Vec3 vector = area_vector(gather(surface.face(f), surface.points).span());
+    for (const Index point : surface.face(f)) sums[point].add(vector);
+  }
+  return sums;
+}
+
+[[noreturn]] void refuse_point(const Mesh& mesh, const Surface& surface, Index point) {
+  const auto at = std::find(surface.point_of_node.begin(), surface.point_of_node.end(), point);
+  const Index node = surface.nodes[at - surface.point_of_node.begin()];
+  throw InputError(
+      fmt::format("node {} at {} has no normal: its faces have no area or cancel each other; mend "
+                  "the mesh there",
+                  mesh.node_tags[node], place(surface.points[point])));
+}
+
+double longest_edge(const Corners& corners) {
+  double longest = 0;
+  for (std::size_t k = 0; k < corners.n; ++k)
+    longest = std::max(
+        longest, (corners.positions[(k + 1) % corners.n] - corners.positions[k]).squaredNorm());
+  return std::sqrt(longest);
+}
+
+// Area vectors; zero where only round-off would decide the direction.
+std::vector<Vec3> face_vectors(const Surface& surface) {
+  std::vector<Vec3> vectors;
+  vectors.reserve(surface.face_tags.size());
+  for (Index f = 0; f < surface.n_faces(); ++f) {
+    const Corners corners = gather(surface.face(f), surface.points);
+    const Vec3 vector = area_vector(corners.span());
+    const double longest = longest_edge(corners);
+    vectors.push_back(vector.norm() > least_area * longest * longest ? vector : Vec3::Zero());
+  }
+  return vectors;
+}
+
+bool is_sharp(const Vec3& a, const Vec3& b, double sharp_angle) {
+  if (a.isZero(0) || b.isZero(0)) return false;
+  return std::atan2(a.cross(b).norm(), a.dot(b)) > sharp_angle;
+}
+
+MeshSize mesh_size(const EdgeTable& edges, std::span<const Vec3> points) {
+  std::vector<double> lengths;
+  lengths.reserve(edges.points.size());
+  for (const auto& [a, b] : edges.points) lengths.push_back((points[b] - points[a]).norm());
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  return {*std::min_element(lengths.begin(), middle + 1), *middle,
+          *std::max_element(middle, lengths.end())};
+}
+
+}  // namespace
+
+void measure_areas(Surface& surface) {
+  surface.areas.assign(surface.points.size(), 0);
+  surface.area = 0;
+  for (Index f = 0; f < surface.n_faces(); ++f) {
+    const auto face = surface.face(f);
+    const double area = polygon_area(gather(face, surface.points).span());
+    surface.area += area;
+    for (const Index point : face) surface.areas[point] += area / static_cast<double>(face.size());
+  }
+}
+
+void measure_normals(const Mesh& mesh, Surface& surface) {
+  const std::vector<VectorSum> sums = max_sums(surface);
+  std::vector<VectorSum> fallback;
+  surface.normals.resize(surface.points.size());
+  for (Index point = 0; point < surface.n_points(); ++point) {
+    const VectorSum* sum = &sums[point];
+    if (!sum->has_direction()) {
+      if (fallback.empty()) fallback = area_sums(surface);
+      sum = &fallback[point];
+    }
+    if (!sum->has_direction()) refuse_point(mesh, surface, point);
+    surface.normals[point] = sum->sum / sum->sum.norm();
+  }
+}
+
+void measure_edges(const EdgeTable& edges, double sharp_angle, Surface& surface) {
+  const std::vector<Vec3> vectors = face_vectors(surface);
+  for (Index e = 0; e < edges.size(); ++e) {
+    const auto sides = edges.edge(e);
+    if (sides.size() == 1)
+      ++surface.n_border_edges;
+    else if (sides.size() > 2)
+      ++surface.n_nonmanifold_edges;
+    else if (is_sharp(vectors[sides[0].face], vectors[sides[1].face], sharp_angle))
+      ++surface.n_sharp_edges;
+  }
+  surface.mesh_size = mesh_size(edges, surface.points);
+}
+
+}  // namespace roughmesh::detail

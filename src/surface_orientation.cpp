@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "surface_orientation.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "roughmesh/error.hpp"
+
+#include "messages.hpp"
+#include "polygon.hpp"
+#include "volume_faces.hpp"
+
+namespace roughmesh::detail {
+namespace {
+
+// A patch is connected through edges of exactly two faces: beyond an edge of three faces there is
+// no telling which two belong together.
+struct Patches {
+  std::vector<Index> of_face;
+  std::vector<std::uint8_t> turned;  // per face: against the corners as given
+  Index n = 0;
+};
+
+Vec3 centroid(const WeldedPoints& welded, std::span<const Index> face) {
+  Vec3 sum = Vec3::Zero();
+  for (const Index point : face) sum += welded.points[point];
+  return sum / static_cast<double>(face.size());
+}
+
+[[noreturn]] void refuse_one_sided(const WeldedPoints& welded, const Faces& faces, Index face) {
+  const Tag tag = faces.tags[face];
+  throw InputError(fmt::format(
+      "the surface is one-sided (like a Moebius strip): its normals contradict each other {}at {}; "
+      "leave out faces or split the surface there",
+      tag > 0 ? fmt::format("near element {} ", tag) : "",
+      place(centroid(welded, faces.face(face)))));
+}
+
+// Breadth first from one face; the patches found so far are complete.
+void grow_patch(const WeldedPoints& welded, const Faces& faces, const EdgeTable& edges, Index seed,
+                Patches& patches) {
+  std::vector<Index> front = {seed};
+  patches.of_face[seed] = patches.n;
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    const Index face = front[i];
+    for (Index corner = faces.offsets[face]; corner < faces.offsets[face + 1]; ++corner) {
+      const auto sides = edges.edge(edges.edge_of_corner[corner]);
+      if (sides.size() != 2) continue;
+      const Index other = sides[0].face == face ? sides[1].face : sides[0].face;
+      const bool same_way = sides[0].forward == sides[1].forward;
+      const bool turned = (patches.turned[face] != 0) != same_way;
+      if (patches.of_face[other] < 0) {
+        patches.of_face[other] = patches.n;
+        patches.turned[other] = turned;
+        front.push_back(other);
+      } else if ((patches.turned[other] != 0) != turned) {
+        refuse_one_sided(welded, faces, other);
+      }
+    }
+  }
+  ++patches.n;
+}
+
+Patches make_patches(const WeldedPoints& welded, const Faces& faces, const EdgeTable& edges) {
+  Patches patches{std::vector<Index>(faces.tags.size(), -1),
+                  std::vector<std::uint8_t>(faces.tags.size(), 0), 0};
+  for (Index face = 0; face < faces.size(); ++face)
+    if (patches.of_face[face] < 0) grow_patch(welded, faces, edges, face, patches);
+  return patches;
+}
+
+void turn_patches(const std::vector<std::uint8_t>& turn, Patches& patches) {
+  for (std::size_t face = 0; face < patches.turned.size(); ++face)
+    patches.turned[face] ^= turn[patches.of_face[face]];
+}
+
+// Each patch as its first face in the file has it.
+void keep_first_in_file(const Faces& faces, Patches& patches) {
+  std::vector<Index> first(static_cast<std::size_t>(patches.n), -1);
+  for (Index face = 0; face < faces.size(); ++face) {
+    Index& best = first[patches.of_face[face]];
+    if (best < 0 || faces.file_order[face] < faces.file_order[best]) best = face;
+  }
+  std::vector<std::uint8_t> turn(first.size());
+  for (std::size_t patch = 0; patch < first.size(); ++patch)
+    turn[patch] = patches.turned[first[patch]];
+  turn_patches(turn, patches);
+}
+
+// A patch is closed if at every edge its faces run to and fro equally often.
+std::vector<std::uint8_t> closed_patches(const EdgeTable& edges, const Patches& patches) {
+  std::vector<std::uint8_t> closed(static_cast<std::size_t>(patches.n), 1);
+  for (Index e = 0; e < edges.size(); ++e) {
+    const auto sides = edges.edge(e);
+    for (const Side& side : sides) {
+      const Index patch = patches.of_face[side.face];
+      int balance = 0;
+      for (const Side& other : sides)
+        if (patches.of_face[other.face] == patch)
+          balance += other.forward == (patches.turned[other.face] != 0) ? -1 : 1;
+      if (balance != 0) closed[patch] = 0;
+    }
+  }
+  return closed;
+}
+
+// Volume inside each patch, from cones about the patch's own centre so that a body far from the
+// origin keeps its digits.
+std::vector<double> patch_volumes(const WeldedPoints& welded, const Faces& faces,
+                                  const Patches& patches) {
+  const auto n = static_cast<std::size_t>(patches.n);
+  std::vector<Vec3> centres(n, Vec3::Zero());
+  std::vector<double> counts(n, 0), volumes(n, 0);
+  for (Index face = 0; face < faces.size(); ++face) {
+    centres[patches.of_face[face]] += centroid(welded, faces.face(face));
+    counts[patches.of_face[face]] += 1;
+  }
+  for (std::size_t patch = 0; patch < n; ++patch) centres[patch] /= counts[patch];
+  for (Index face = 0; face < faces.size(); ++face) {
+    const Index patch = patches.of_face[face];
+    const Corners corners = gather(faces.face(face), welded.points);
+    const double volume = cone_volume(corners.span(), centres[patch]);
+    volumes[patch] += patches.turned[face] ? -volume : volume;
+  }
+  return volumes;
+}
+
+// Entities of the volume elements on either side of a face, seen along its corners as given.
+struct Neighbours {
+  std::optional<Tag> behind, ahead;
+};
+
+void note_neighbours(const Mesh& mesh, const ElementBlock& block, Index element,
+                     const WeldedPoints& welded, const FaceLookup& lookup, const Faces& faces,
+                     std::vector<Neighbours>& neighbours) {
+  for (std::size_t f = 0; f < local_faces(block.type.shape).size(); ++f) {
+    VolumeFace face = volume_face(block, element, f);
+    for (Index& node : face.nodes) node = welded.point_of_node[node];
+    const Index number = lookup.find(face.corners());
+    if (number < 0) continue;
+    Vec3 middle = Vec3::Zero();
+    const int n = n_corners(block.type.shape);
+    for (int corner = 0; corner < n; ++corner)
+      middle += mesh.nodes[block.element(element)[corner]] / n;
+    const Corners corners = gather(faces.face(number), welded.points);
+    const Vec3 inward = middle - centroid(welded, faces.face(number));
+    const bool ahead = area_vector(corners.span()).dot(inward) > 0;
+    (ahead ? neighbours[number].ahead : neighbours[number].behind) = block.entity;
+  }
+}
+
+// How many more faces of each patch look out of the lower-numbered volume than into it.
+std::vector<std::int64_t> votes_of_volumes(const Mesh& mesh, const WeldedPoints& welded,
+                                           const Faces& faces, const Patches& patches) {
+  const FaceLookup lookup(faces.offsets, faces.corners);
+  std::vector<Neighbours> neighbours(faces.tags.size());
+  for (const ElementBlock& block : mesh.blocks)
+    for (Index e = 0; e < block.size(); ++e)
+      note_neighbours(mesh, block, e, welded, lookup, faces, neighbours);
+  std::vector<std::int64_t> votes(static_cast<std::size_t>(patches.n), 0);
+  for (std::size_t face = 0; face < neighbours.size(); ++face) {
+    const auto& [behind, ahead] = neighbours[face];
+    if (!behind || !ahead || *behind == *ahead) continue;
+    const bool looks_out = (*behind < *ahead) != (patches.turned[face] != 0);
+    votes[patches.of_face[face]] += looks_out ? 1 : -1;
+  }
+  return votes;
+}
+
+void look_outward(const Mesh& mesh, const WeldedPoints& welded, const Faces& faces,
+                  const EdgeTable& edges, Patches& patches) {
+  const std::vector<std::uint8_t> closed = closed_patches(edges, patches);
+  const std::vector<double> volumes = patch_volumes(welded, faces, patches);
+  std::vector<std::int64_t> votes(closed.size(), 0);
+  if (std::find(closed.begin(), closed.end(), 0) != closed.end())
+    votes = votes_of_volumes(mesh, welded, faces, patches);
+  std::vector<std::uint8_t> turn(closed.size());
+  for (std::size_t patch = 0; patch < turn.size(); ++patch)
+    turn[patch] = closed[patch] ? volumes[patch] < 0 : votes[patch] < 0;
+  turn_patches(turn, patches);
+}
+
+// Patches that touch along edges of three and more faces are one piece.
+Index count_pieces(const EdgeTable& edges, const Patches& patches) {
+  std::vector<Index> parent(static_cast<std::size_t>(patches.n));
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](Index patch) {
+    while (parent[patch] != patch) patch = parent[patch] = parent[parent[patch]];
+    return patch;
+  };
+  Index n_pieces = patches.n;
+  for (Index e = 0; e < edges.size(); ++e)
+    for (const Side& side : edges.edge(e)) {
+      const Index a = root(patches.of_face[edges.edge(e).front().face]);
+      const Index b = root(patches.of_face[side.face]);
+      if (a == b) continue;
+      parent[b] = a;
+      --n_pieces;
+    }
+  return n_pieces;
+}
+
+}  // namespace
+
+Index orient_faces(const Mesh& mesh, const WeldedPoints& welded, const EdgeTable& edges,
+                   Faces& faces) {
+  Patches patches = make_patches(welded, faces, edges);
+  keep_first_in_file(faces, patches);
+  look_outward(mesh, welded, faces, edges, patches);
+  for (Index face = 0; face < faces.size(); ++face)
+    if (patches.turned[face]) faces.turn(face);
+  return count_pieces(edges, patches);
+}
+
+}  // namespace roughmesh::detail

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "volume_faces.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "parallel.hpp"
+#include "surface_faces.hpp"
+
+namespace roughmesh::detail {
+namespace {
+
+// Where a face stands: small, because a mesh has twice as many of them as tetrahedra.
+struct FaceRef {
+  std::int32_t block;
+  Index element;
+  std::uint8_t face;
+};
+
+template <class Visit>
+void for_each_face(const Mesh& mesh, Visit&& visit) {
+  for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
+    const ElementBlock& block = mesh.blocks[b];
+    const std::size_t n_faces = local_faces(block.type.shape).size();
+    for (Index e = 0; e < block.size(); ++e)
+      for (std::size_t f = 0; f < n_faces; ++f)
+        visit(FaceRef{static_cast<std::int32_t>(b), e, static_cast<std::uint8_t>(f)});
+  }
+}
+
+VolumeFace resolve(const Mesh& mesh, const FaceRef& ref) {
+  return volume_face(mesh.blocks[ref.block], ref.element, ref.face);
+}
+
+Index smallest_node(const Mesh& mesh, const FaceRef& ref) {
+  const VolumeFace face = resolve(mesh, ref);
+  const auto corners = face.corners();
+  return *std::min_element(corners.begin(), corners.end());
+}
+
+// Faces sorted into one bucket per smallest node, so that equal faces meet in a bucket of some
+// twenty instead of in one sort of all.
+struct Buckets {
+  std::vector<std::size_t> offsets;
+  std::vector<FaceRef> faces;
+};
+
+Buckets make_buckets(const Mesh& mesh) {
+  Buckets buckets;
+  buckets.offsets.assign(mesh.nodes.size() + 1, 0);
+  for_each_face(mesh, [&](const FaceRef& ref) { ++buckets.offsets[smallest_node(mesh, ref) + 1]; });
+  for (std::size_t i = 1; i < buckets.offsets.size(); ++i)
+    buckets.offsets[i] += buckets.offsets[i - 1];
+  buckets.faces.resize(buckets.offsets.back());
+  std::vector<std::size_t> next(buckets.offsets.begin(), buckets.offsets.end() - 1);
+  for_each_face(mesh,
+                [&](const FaceRef& ref) { buckets.faces[next[smallest_node(mesh, ref)]++] = ref; });
+  return buckets;
+}
+
+struct KeyedFace {
+  FaceKey key;
+  FaceRef ref;
+};
+
+void append_single_faces(const Mesh& mesh, std::span<const FaceRef> bucket,
+                         std::vector<KeyedFace>& scratch, std::vector<VolumeFace>& out) {
+  scratch.clear();
+  for (const FaceRef& ref : bucket)
+    scratch.push_back({face_key(resolve(mesh, ref).corners()), ref});
+  std::sort(scratch.begin(), scratch.end(),
+            [](const KeyedFace& a, const KeyedFace& b) { return a.key < b.key; });
+  for (std::size_t i = 0; i < scratch.size();) {
+    std::size_t end = i + 1;
+    while (end < scratch.size() && scratch[end].key == scratch[i].key) ++end;
+    if (end == i + 1) out.push_back(resolve(mesh, scratch[i].ref));
+    i = end;
+  }
+}
+
+}  // namespace
+
+VolumeFace volume_face(const ElementBlock& block, Index element, std::size_t face) {
+  const std::vector<int>& local = local_faces(block.type.shape)[face];
+  const auto nodes = block.element(element);
+  VolumeFace result;
+  for (const int corner : local) result.nodes[result.n_nodes++] = nodes[corner];
+  return result;
+}
+
+std::vector<VolumeFace> boundary_faces(const Mesh& mesh) {
+  const Buckets buckets = make_buckets(mesh);
+  constexpr std::size_t grain = 8192;
+  std::vector<std::vector<VolumeFace>> parts((mesh.nodes.size() + grain - 1) / grain);
+  parallel_for(mesh.nodes.size(), grain, [&](std::size_t begin, std::size_t end) {
+    std::vector<KeyedFace> scratch;
+    for (std::size_t node = begin; node < end; ++node) {
+      const std::size_t first = buckets.offsets[node];
+      append_single_faces(mesh, {buckets.faces.data() + first, buckets.offsets[node + 1] - first},
+                          scratch, parts[begin / grain]);
+    }
+  });
+  std::vector<VolumeFace> faces;
+  for (const std::vector<VolumeFace>& part : parts)
+    faces.insert(faces.end(), part.begin(), part.end());
+  return faces;
+}
+
+}  // namespace roughmesh::detail
