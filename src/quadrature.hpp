@@ -18,7 +18,7 @@ double log_gamma_normalization(double shape);
 template <class Function>
 double gamma_expectation(double shape, double lowest, const Function& f) {
   constexpr double negligible = 45;  // exp(-45) = 3e-20
-  const double step = std::min(0.2, 0.7 / std::sqrt(shape));
+  const double step = std::min(0.15, 0.6 / std::sqrt(shape));
   const auto exponent = [&](double s) { return shape * (std::expm1(s) - s); };
   double sum = 0;
   for (double k = 0; exponent(k * step) < negligible; ++k)
