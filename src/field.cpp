@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "roughmesh/field.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -69,6 +70,10 @@ std::vector<double> FieldSampler::heights(std::uint64_t seed, std::uint64_t real
 }
 
 double FieldSampler::covariance(Index i, Index j) const {
+  const auto n = static_cast<Index>(plan_->points.size());
+  if (std::min(i, j) < 0 || std::max(i, j) >= n)
+    throw InputError(
+        fmt::format("covariance of points {} and {}: there are points 0 to {}", i, j, n - 1));
   const detail::PointPair pair{i, j};
   return plan_->field.factor.covariances({&pair, 1}).front();
 }
@@ -82,7 +87,8 @@ const FieldSummary& FieldSampler::summary() const { return plan_->field.summary;
 
 std::vector<std::string> FieldSampler::citations() const {
   std::vector<std::string> works = {
-      "Loth, Kiel, Busch, Kristensen (2020), Surface roughness in finite element meshes",
+      "Loth, Kiel, Busch, Kristensen (2020), Surface roughness in finite element meshes, "
+      "arXiv:2002.00894",
       "Salmon, Moraes, Dror, Shaw (2011), Parallel random numbers: as easy as 1, 2, 3, "
       "doi:10.1145/2063384.2063405",
       "Higham (2009), Cholesky factorization, doi:10.1002/wics.18"};

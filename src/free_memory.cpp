@@ -68,18 +68,22 @@ std::optional<std::uint64_t> free_in_groups(const fs::path& root, const std::str
   return free;
 }
 
+bool has_word(const std::string& comma_separated, const std::string& word) {
+  std::istringstream words(comma_separated);
+  for (std::string each; std::getline(words, each, ',');)
+    if (each == word) return true;
+  return false;
+}
+
 /// From the lines "number:controllers:group" of /proc/self/cgroup; version 2 names no controllers.
 std::optional<std::uint64_t> free_in_own_groups(const fs::path& root) {
   std::ifstream in(root / "proc/self/cgroup");
   std::optional<std::uint64_t> free;
-  for (std::string line; std::getline(in, line);) {
-    const auto first = line.find(':');
-    const auto second = line.find(':', first + 1);
-    if (first == std::string::npos || second == std::string::npos) continue;
-    const std::string controllers = "," + line.substr(first + 1, second - first - 1) + ",";
-    const std::string group = line.substr(second + 1);
-    if (controllers == ",,") free = smaller(free, free_in_groups(root, group, version_2));
-    if (controllers.find(",memory,") != std::string::npos)
+  std::string number, controllers, group;
+  while (std::getline(in, number, ':') && std::getline(in, controllers, ':') &&
+         std::getline(in, group)) {
+    if (controllers.empty()) free = smaller(free, free_in_groups(root, group, version_2));
+    if (has_word(controllers, "memory"))
       free = smaller(free, free_in_groups(root, group, version_1));
   }
   return free;
