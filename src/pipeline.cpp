@@ -123,7 +123,7 @@ struct Prepared {
   Surface surface;
   FieldModel model;
   FieldSampler sampler;
-  std::optional<VolumeMover> mover;  ///< absent when the interior stays
+  VolumeMover mover;
   ExpectedSq expected;
   double min_quality = 0;
 };
@@ -142,9 +142,10 @@ Prepared prepare(const Mesh& mesh, const RoughenOptions& options, Report& report
   warn_of_surface(report, surface);
   warn_of_scale(report, mesh, surface, model);
 
-  std::optional<VolumeMover> mover;
-  if (options.volume == VolumeChoice::move) timed(t.volume, [&] { mover.emplace(mesh, surface); });
-  if (mover) warn_of_walls(report, *mover);
+  const VolumeMethod method =
+      options.volume == VolumeChoice::move ? VolumeMethod::harmonic : VolumeMethod::none;
+  VolumeMover mover = timed(t.volume, [&] { return VolumeMover(mesh, surface, method); });
+  warn_of_walls(report, mover);
 
   FieldSampler sampler = timed(t.field, [&] {
     return FieldSampler(surface.points, model.autocorrelation, model.distance,
@@ -192,7 +193,6 @@ void refuse_invalid(const RoughMesh& rough, Report& report) {
 
 RealizationReport describe(const Prepared& prepared, const RoughMesh& rough,
                            std::span<const double> heights, double rq) {
-  const VolumeMethod method = prepared.mover ? prepared.mover->method() : VolumeMethod::none;
   return {.index = rough.realization,
           .path = "",
           .statistics = height_statistics(prepared.surface, heights),
@@ -202,7 +202,7 @@ RealizationReport describe(const Prepared& prepared, const RoughMesh& rough,
           .min_quality = rough.check.min_quality,
           .min_quality_before = prepared.min_quality,
           .self_intersections = std::nullopt,
-          .volume_method = method};
+          .volume_method = prepared.mover.method()};
 }
 
 RoughMesh realize(const Mesh& mesh, const Prepared& prepared, std::uint64_t index, Report& report) {
@@ -221,10 +221,7 @@ RoughMesh realize(const Mesh& mesh, const Prepared& prepared, std::uint64_t inde
   });
   const std::vector<Vec3> displacements =
       timed(t.displace, [&] { return displace(surface, heights); });
-  timed(t.volume, [&] {
-    rough.mesh.nodes = prepared.mover ? prepared.mover->move(displacements)
-                                      : moved_nodes(mesh, surface, displacements);
-  });
+  timed(t.volume, [&] { rough.mesh.nodes = prepared.mover.move(displacements); });
   rough.displacements.resize(mesh.nodes.size());
   for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
     rough.displacements[i] = rough.mesh.nodes[i] - mesh.nodes[i];

@@ -15,9 +15,4 @@ namespace roughmesh {
 /// @return         n vectors, in the order of surface.points
 std::vector<Vec3> displace(const Surface& surface, std::span<const double> heights);
 
-/// Positions of all nodes of the mesh when only those on the surface move.
-/// @param displacements  n vectors, in the order of surface.points
-std::vector<Vec3> moved_nodes(const Mesh& mesh, const Surface& surface,
-                              std::span<const Vec3> displacements);
-
 }  // namespace roughmesh
