@@ -2,6 +2,7 @@
 // STL: loose triangles with a normal each. Corners at equal positions become one node.
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -184,29 +185,34 @@ Solid read_solid(Scanner& scanner, Soup& soup) {
 }
 
 // Each named solid is a group; solids of the same name are one.
-void add_solid(Mesh& mesh, const Soup& soup, const Solid& solid, Tag number) {
-  ElementBlock& block = mesh.blocks.emplace_back();
-  block.type = triangle;
-  block.entity = number;
-  add_facets(block, soup, solid.begin, solid.end);
-  if (solid.name.empty()) return;
-  const auto same = std::find_if(mesh.groups.begin(), mesh.groups.end(),
-                                 [&](const auto& group) { return group.name == solid.name; });
-  if (same == mesh.groups.end()) mesh.groups.push_back({2, number, solid.name});
-  block.physical_groups = {same == mesh.groups.end() ? number : same->tag};
+void add_solids(Mesh& mesh, const Soup& soup, const std::vector<Solid>& solids) {
+  std::map<std::string_view, Tag> groups;
+  for (std::size_t i = 0; i < solids.size(); ++i) {
+    const Solid& solid = solids[i];
+    const Tag number = static_cast<Tag>(i) + 1;
+    ElementBlock& block = mesh.blocks.emplace_back();
+    block.type = triangle;
+    block.entity = number;
+    add_facets(block, soup, solid.begin, solid.end);
+    if (solid.name.empty()) continue;
+    const auto [group, is_new] = groups.try_emplace(solid.name, number);
+    block.physical_groups = {group->second};
+    if (is_new) mesh.groups.push_back({2, number, solid.name});
+  }
 }
 
-// A facet keeps its bytes unless a corner moves; degenerate ones have no normal.
+// Zero for a triangle without area.
 Vec3 normal_of_stored(const MeshSource& source, const std::array<Vec3, 3>& corners) {
   std::array<Vec3, 3> x;
   for (std::size_t k = 0; k < 3; ++k)
     x[k] = corners[k].unaryExpr([&](double value) { return as_stored(source, value); });
-  Vec3 a = x[1] - x[0], b = x[2] - x[0];
+  const Vec3 a = x[1] - x[0], b = x[2] - x[0];
   // Scaled first, so that neither tiny nor huge triangles leave the range of doubles.
   const double scale = std::max(a.lpNorm<Eigen::Infinity>(), b.lpNorm<Eigen::Infinity>());
   const Vec3 area = (a / scale).cross(b / scale);
   const double length = area.norm();
-  return length > 0 && std::isfinite(length) ? Vec3(area / length) : Vec3::Zero();
+  if (!(length > 0 && std::isfinite(length))) return Vec3::Zero();
+  return area / length + Vec3::Zero();  // no -0
 }
 
 }  // namespace
@@ -251,8 +257,7 @@ Mesh read_text_stl(FileBytes file) {
     scanner.refuse("more triangles than roughmesh handles; split the mesh");
   Mesh mesh;
   add_nodes(mesh, soup);
-  for (const Solid& solid : solids)
-    add_solid(mesh, soup, solid, static_cast<Tag>(&solid - solids.data()) + 1);
+  add_solids(mesh, soup, solids);
   attach_source(mesh, std::move(file), std::move(soup), NumberFormat::text);
   return mesh;
 }

@@ -75,10 +75,12 @@ class Header {
   void add(std::string_view text) { xml_ += text; }
   void add_array(std::string_view type, std::string_view name, int n_components,
                  std::uint64_t n_bytes) {
+    // Without the attribute an array is a scalar; readers make a column of "1".
+    const std::string components =
+        n_components == 1 ? "" : fmt::format(" NumberOfComponents=\"{}\"", n_components);
     xml_ += fmt::format(
-        "        <DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" "
-        "offset=\"{}\"/>\n",
-        type, escaped(name), n_components, offset_);
+        "        <DataArray type=\"{}\" Name=\"{}\"{} format=\"appended\" offset=\"{}\"/>\n", type,
+        escaped(name), components, offset_);
     offset_ += sizeof(std::uint64_t) + n_bytes;
   }
   const std::string& xml() const { return xml_; }

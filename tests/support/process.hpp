@@ -3,8 +3,7 @@
 #pragma once
 
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
+#include <filesystem>
 #include <string>
 
 #include <sys/wait.h>
@@ -30,10 +29,6 @@ inline Outcome run_in(const TemporaryFolder& folder, const std::string& line) {
   std::filesystem::remove(out);
   std::filesystem::remove(err);
   return outcome;
-}
-
-inline bool has_program(const std::string& name) {
-  return std::system(("command -v " + name + " >/dev/null 2>&1").c_str()) == 0;
 }
 
 }  // namespace roughmesh::test
