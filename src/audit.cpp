@@ -38,17 +38,17 @@ std::uint64_t spread_bits(std::uint64_t x) {
   return (x | x << 2) & 0x1249249249249249;
 }
 
-/// Points along Morton's curve, on which neighbours are close in space.
-std::vector<Index> curve_through(std::span<const Vec3> points, const Eigen::Matrix3d& stretch) {
+/// Points along Morton's curve through their box, shifted diagonally by a part of its size.
+std::vector<Index> curve_through(const std::vector<Vec3>& points, double shift) {
   Eigen::AlignedBox3d box;
-  for (const Vec3& x : points) box.extend(stretch * x);
+  for (const Vec3& x : points) box.extend(x);
   const double size = std::max(box.sizes().maxCoeff(), std::numeric_limits<double>::min());
   std::vector<std::uint64_t> code(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vec3 cell = (stretch * points[i] - box.min()) * (0x1fffff / size);
-    for (int axis = 0; axis < 3; ++axis)
-      code[i] |= spread_bits(static_cast<std::uint64_t>(cell[axis])) << axis;
-  }
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (int axis = 0; axis < 3; ++axis) {
+      const double place = ((points[i] - box.min())[axis] / size + shift) / 2;  // in [0, 1)
+      code[i] |= spread_bits(static_cast<std::uint64_t>(place * 0x1p21)) << axis;
+    }
   std::vector<Index> curve(points.size());
   std::iota(curve.begin(), curve.end(), Index{0});
   std::sort(curve.begin(), curve.end(),
@@ -61,17 +61,29 @@ struct NearPairs {
   double shortest = 0;  ///< shortest positive distance; 0 if there is none
 };
 
-/// The closest of the pairs that follow each other on the curve.
+/// The closest of the pairs that follow each other on one of five curves. A curve that crosses a
+/// face of its cells between two close points parts them. But seen from cells of any size, the five
+/// shifts put the faces of one axis a fifth of a cell apart, so that each of the three axes spoils
+/// one curve at most, and two curves are left on which the closest pair stays together.
 NearPairs near_pairs(std::span<const Vec3> points, const Distance& distance) {
-  const std::vector<Index> curve = curve_through(points, distance.stretch());
-  std::vector<std::pair<double, PointPair>> steps(curve.size() - 1);
-  for (std::size_t k = 0; k < steps.size(); ++k)
-    steps[k] = {distance(points[curve[k]], points[curve[k + 1]]), {curve[k], curve[k + 1]}};
+  constexpr int n_curves = 5;
+  std::vector<Vec3> stretched(points.begin(), points.end());
+  for (Vec3& x : stretched) x = distance.stretch() * x;
+  std::vector<std::pair<double, PointPair>> steps;
+  for (int c = 0; c < n_curves; ++c) {
+    const std::vector<Index> curve = curve_through(stretched, static_cast<double>(c) / n_curves);
+    for (std::size_t k = 1; k < curve.size(); ++k)
+      steps.emplace_back(distance(points[curve[k - 1]], points[curve[k]]),
+                         std::minmax(curve[k - 1], curve[k]));
+  }
+  std::sort(steps.begin(), steps.end());
+  steps.erase(std::unique(steps.begin(), steps.end()), steps.end());
   NearPairs near;
-  for (const auto& [length, pair] : steps)
-    if (length > 0 && (near.shortest == 0 || length < near.shortest)) near.shortest = length;
-  std::partial_sort(steps.begin(), steps.begin() + n_near_pairs, steps.end());
-  for (std::size_t k = 0; k < n_near_pairs; ++k) near.pairs.push_back(steps[k].second);
+  const auto positive =
+      std::find_if(steps.begin(), steps.end(), [](const auto& step) { return step.first > 0; });
+  if (positive != steps.end()) near.shortest = positive->first;
+  steps.resize(std::min(steps.size(), n_near_pairs));
+  for (const auto& step : steps) near.pairs.push_back(step.second);
   return near;
 }
 

@@ -50,7 +50,15 @@ double assemble(const AutocorrelationMatrix& matrix, DenseMatrix& a) {
       const std::span<double> below(a.column(j) + j + 1, n - j - 1);
       a(j, j) = 1.0;
       matrix.write_below_diagonal(j, below);
-      for (const double r : below) smallest[begin / grain] = std::min(smallest[begin / grain], r);
+      bool are_numbers = true;
+      for (const double r : below) {
+        are_numbers &= !std::isnan(r);
+        smallest[begin / grain] = std::min(smallest[begin / grain], r);
+      }
+      // The factorizations compare with limits, which a NaN passes unseen.
+      if (!are_numbers)
+        throw NumericalError(fmt::format(
+            "a correlation with point {} is not a number; change the distance or the function", j));
     }
   });
   return *std::min_element(smallest.begin(), smallest.end());

@@ -36,7 +36,8 @@ struct PreparedField {
 /// - where that shows R to be indefinite: eigenvalues, the negative ones set to zero.
 ///
 /// @throws InputError      too little free memory
-/// @throws NumericalError  the eigenvalue decomposition did not converge
+/// @throws NumericalError  a correlation that is not a number; the eigenvalue decomposition did not
+/// converge
 PreparedField prepare_cholesky(const AutocorrelationMatrix& matrix);
 
 }  // namespace roughmesh::detail

@@ -41,7 +41,7 @@ std::string_view name(
 struct FieldSummary {
   Method method = Method::cholesky;
   Factorization factorization = Factorization::cholesky;
-  Index rank = 0;
+  Index rank = 0;                  ///< columns of L; `eigenvalue`: eigenvalues above 1e-8
   Index negative_eigenvalues = 0;  ///< below -1e-8; 0 for the Cholesky factorizations
   std::optional<double> smallest_eigenvalue;
   double smallest_correlation = 0;  ///< smallest rho between two points
@@ -65,8 +65,10 @@ struct Audit {
 class FieldSampler {
  public:
   /// @param points  n >= 1 distinct points in canonical order (Surface::points)
-  /// @throws InputError      tolerance out of range; too little free memory, naming what is needed
-  /// @throws NumericalError  the eigenvalue decomposition did not converge
+  /// @throws InputError      no points or one that is not finite; tolerance out of range; too
+  /// little free memory, naming what is needed
+  /// @throws NumericalError  a correlation that is not a number; the eigenvalue decomposition did
+  ///                         not converge
   FieldSampler(std::span<const Vec3> points, const Autocorrelation& autocorrelation,
                const Distance& distance, const FieldOptions& options = {});
   ~FieldSampler();

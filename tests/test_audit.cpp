@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The audit looks at pairs of every distance, and sees an error that is there.
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "audit.hpp"
+#include "field_cholesky.hpp"
+#include "support/meshes.hpp"
+#include "support/points.hpp"
+
+namespace roughmesh::detail {
+namespace {
+
+const Autocorrelation exponential({.family = Family::exponential, .length = 0.3});
+
+std::vector<Vec3> sphere_points(int subdivisions) {
+  return test::sorted(test::icosphere(subdivisions).nodes);
+}
+
+std::vector<double> distances(const std::vector<PointPair>& pairs, const std::vector<Vec3>& points,
+                              const Distance& distance) {
+  std::vector<double> result;
+  for (const auto& [i, j] : pairs) result.push_back(distance(points[i], points[j]));
+  return result;
+}
+
+/// Lower triangle of the identity of n points, as the factor of uncorrelated heights.
+DenseMatrix identity(std::size_t n) {
+  DenseMatrix a(n, n);
+  for (std::size_t j = 0; j < n; ++j)
+    for (std::size_t i = j; i < n; ++i) a(i, j) = i == j ? 1.0 : 0.0;
+  return a;
+}
+
+std::vector<Index> identity_order(std::size_t n) {
+  std::vector<Index> order(n);
+  std::iota(order.begin(), order.end(), Index{0});
+  return order;
+}
+
+TEST(AuditedPairs, AreAllPairsOfAFewPoints) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 141; ++i) points.emplace_back(i, 0, 0);  // 141 * 140 / 2 = 9,870
+  const auto pairs = audited_pairs(points, Distance::euclidean());
+  EXPECT_EQ(pairs.size(), 9870u);
+  EXPECT_EQ(std::set(pairs.begin(), pairs.end()).size(), 9870u);
+  for (const auto& [i, j] : pairs) EXPECT_LT(i, j);
+  points.resize(1);
+  EXPECT_TRUE(audited_pairs(points, Distance::euclidean()).empty());
+}
+
+// Half of the 50 strata, in which a pair is sought for each of 196 points, lie between a mesh size
+// and the diameter: so thousands of pairs, some of each octave.
+TEST(AuditedPairs, CoverEveryDistanceFromTheShortestUp) {
+  const std::vector<Vec3> points = sphere_points(4);
+  for (const Distance& distance :
+       {Distance::euclidean(), Distance::great_circle(Sphere{Vec3::Zero(), 1.0, 0.0})}) {
+    const auto pairs = audited_pairs(points, distance);
+    EXPECT_GT(pairs.size(), 4000u);
+    EXPECT_LE(pairs.size(), 10'000u);
+    double shortest = 10, largest = 0;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        shortest = std::min(shortest, distance(points[i], points[j]));
+        largest = std::max(largest, distance(points[i], points[j]));
+      }
+    const std::vector<double> r = distances(pairs, points, distance);
+    EXPECT_NEAR(*std::min_element(r.begin(), r.end()), shortest, 1e-12);
+    EXPECT_GT(*std::max_element(r.begin(), r.end()), 0.95 * largest);
+    for (double low = shortest; low < largest; low *= 2)
+      EXPECT_GT(std::count_if(r.begin(), r.end(),
+                              [&](double x) { return x >= low && x < 2 * low * (1 + 1e-12); }),
+                100)
+          << low;
+    for (const auto& [i, j] : pairs) EXPECT_NE(i, j);
+  }
+}
+
+// One pair of points a thousandth of the mesh size apart, anywhere in the mesh, is among the pairs.
+TEST(AuditedPairs, HoldTheClosestPairOfAGradedMesh) {
+  for (const std::size_t near : {0, 1000, 2561}) {
+    std::vector<Vec3> points = sphere_points(4);
+    points.push_back(points[near] + Vec3(3e-5, 1e-5, 2e-5));
+    const auto pairs = audited_pairs(points, Distance::euclidean());
+    const std::vector<double> r = distances(pairs, points, Distance::euclidean());
+    EXPECT_LT(*std::min_element(r.begin(), r.end()), 1e-4) << near;
+  }
+}
+
+TEST(AuditedPairs, AreFewForManyPointsToo) {
+  const std::vector<Vec3> points = test::plate(300).nodes;
+  EXPECT_LE(audited_pairs(points, Distance::euclidean()).size(), 10'000u);
+}
+
+// Streaks: two of three lengths infinite, so that most points are at distance 0 of some other.
+TEST(AuditedPairs, BearPointsAtDistanceZero) {
+  const double inf = std::numeric_limits<double>::infinity();
+  const std::vector<Vec3> points = test::plate(30).nodes;
+  const Distance streaks = Distance::stretched({.lengths = {0.1, inf, inf}});
+  EXPECT_GT(audited_pairs(points, streaks).size(), 1000u);
+  std::vector<Vec3> column = points;
+  for (Vec3& x : column) x[0] = 0;
+  EXPECT_FALSE(audited_pairs(column, streaks).empty());
+}
+
+// Uncorrelated heights, where an exponential was asked for: the error is rho at the shortest
+// distance.
+TEST(Audit, SeesAMissingCorrelation) {
+  const std::vector<Vec3> points = sphere_points(3);
+  const Factor factor(identity(points.size()), identity_order(points.size()),
+                      FactorShape::trapezoid);
+  const auto pairs = audited_pairs(points, Distance::euclidean());
+  const std::vector<double> r = distances(pairs, points, Distance::euclidean());
+  const Audit audit = audit_covariance(factor, points, exponential, Distance::euclidean());
+  EXPECT_DOUBLE_EQ(audit.covariance_error, exponential.rho(*std::min_element(r.begin(), r.end())));
+  EXPECT_EQ(audit.n_pairs, static_cast<Index>(pairs.size()));
+  EXPECT_EQ(audit.n_diagonal, static_cast<Index>(points.size()));
+}
+
+// A row of the factor a thousandth too large: its variance is 1.001^2, too large by 0.002001.
+TEST(Audit, SeesOneRowThatIsTooLarge) {
+  const std::size_t n = 642, row = 123;
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < n; ++i) points.emplace_back(1000.0 * static_cast<double>(i), 0, 0);
+  DenseMatrix columns = identity(n);
+  const Factor right(identity(n), identity_order(n), FactorShape::trapezoid);
+  EXPECT_EQ(audit_covariance(right, points, exponential, Distance::euclidean()).covariance_error,
+            0);
+  columns(row, row) *= 1.001;
+  const Factor wrong(std::move(columns), identity_order(n), FactorShape::trapezoid);
+  EXPECT_NEAR(audit_covariance(wrong, points, exponential, Distance::euclidean()).covariance_error,
+              0.002001, 1e-12);
+}
+
+TEST(Audit, DoesNotTakeANumberThatIsNoneForAgreement) {
+  const std::vector<Vec3> points = sphere_points(2);
+  DenseMatrix columns = identity(points.size());
+  columns(7, 3) = std::numeric_limits<double>::quiet_NaN();
+  const Factor factor(std::move(columns), identity_order(points.size()), FactorShape::trapezoid);
+  EXPECT_EQ(audit_covariance(factor, points, exponential, Distance::euclidean()).covariance_error,
+            std::numeric_limits<double>::infinity());
+}
+
+// What is compared is what was asked for, so a factor of another length does not pass.
+TEST(Audit, SeesALengthThatWasNotAskedFor) {
+  const std::vector<Vec3> points = sphere_points(2);
+  const Distance distance = Distance::euclidean();
+  const Autocorrelation longer(
+      {.family = Family::exponential, .length = 0.3 * std::numbers::sqrt2});
+  const PreparedField field = prepare_cholesky(autocorrelation_matrix(points, longer, distance));
+  EXPECT_LT(audit_covariance(field.factor, points, longer, distance).covariance_error, 1e-12);
+  EXPECT_GT(audit_covariance(field.factor, points, exponential, distance).covariance_error, 0.05);
+}
+
+}  // namespace
+}  // namespace roughmesh::detail
