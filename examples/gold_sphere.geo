@@ -18,7 +18,6 @@ Physical Surface("outer") = outer[];
 // 4 nm on the sphere (correlation length 10 nm over 2.5), growing to 40 nm at the box.
 Field[1] = Distance;
 Field[1].SurfacesList = {surface[]};
-Field[1].Sampling = 200;
 Field[2] = Threshold;
 Field[2].InField = 1;
 Field[2].SizeMin = 4;
