@@ -9,7 +9,7 @@
 
 #include <Eigen/LU>
 
-#include "quadrature.hpp"
+#include "gamma_function.hpp"
 
 namespace roughmesh::detail {
 namespace {
@@ -63,7 +63,7 @@ double log_matern(double nu, double x) {
   const double z = std::sqrt(2 * nu) * x;
   const double a = (nu + std::hypot(nu, z)) / 2;
   const double b = z / a * (z / 4);
-  return nu * std::log1p(b / nu) - 2 * b + log_peak_integral(a, b) - log_gamma_normalization(nu);
+  return nu * std::log1p(b / nu) - 2 * b + log_peak_integral(a, b) - log_scaled_gamma(nu);
 }
 
 bool is_half_integer_matern(double nu) { return nu == 0.5 || nu == 1.5 || nu == 2.5; }
