@@ -73,10 +73,11 @@ NodeFlags wall_nodes(const Mesh& mesh, const Surface& surface,
 }
 
 detail::NodeRoles make_roles(const Mesh& mesh, const Surface& surface,
-                             std::vector<Index> point_of_node, const NodeFlags& on_wall) {
+                             std::vector<Index> point_of_node, const NodeFlags& on_wall,
+                             bool moves_interior) {
   NodeFlags in_volume(mesh.nodes.size(), 0);
   for (const ElementBlock& block : mesh.blocks)
-    if (is_volume(block))
+    if (moves_interior && is_volume(block))
       for (const Index node : block.nodes) in_volume[node] = 1;
   detail::NodeRoles roles;
   roles.unknown.assign(mesh.nodes.size(), -1);
@@ -130,7 +131,7 @@ std::string_view name(VolumeMethod method) {
   return method == VolumeMethod::harmonic ? "harmonic" : "none";
 }
 
-VolumeMover::VolumeMover(const Mesh& mesh, const Surface& surface) {
+VolumeMover::VolumeMover(const Mesh& mesh, const Surface& surface, VolumeMethod method) {
   auto plan = std::make_unique<Plan>();
   plan->nodes = mesh.nodes;
   plan->surface_nodes = surface.nodes;
@@ -143,12 +144,13 @@ VolumeMover::VolumeMover(const Mesh& mesh, const Surface& surface) {
   const NodeFlags on_wall = wall_nodes(mesh, surface, point_of_node);
   for (const Index node : surface.nodes) plan->n_wall_nodes += on_wall[node];
 
-  const detail::NodeRoles roles = make_roles(mesh, surface, std::move(point_of_node), on_wall);
+  const bool moves_interior = method == VolumeMethod::harmonic && n_elements(mesh, 3) > 0;
+  const detail::NodeRoles roles =
+      make_roles(mesh, surface, std::move(point_of_node), on_wall, moves_interior);
   require_linear_elements(mesh, roles);
   for (Index node = 0; node < mesh.n_nodes(); ++node)
     if (roles.unknown[node] >= 0) plan->free_nodes.push_back(node);
-  if (n_elements(mesh, 3) > 0)
-    plan->extension.emplace(mesh.nodes, deforming_tetrahedra(mesh, roles), roles);
+  if (moves_interior) plan->extension.emplace(mesh.nodes, deforming_tetrahedra(mesh, roles), roles);
   plan_ = std::move(plan);
 }
 

@@ -2,6 +2,7 @@
 // Autocorrelation functions rho(r), as values.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,6 +11,10 @@
 #include "roughmesh/error.hpp"
 
 namespace roughmesh {
+
+namespace detail {
+class MaternTable;
+}
 
 enum class Family { gaussian, exponential, matern, self_affine, stretched, rational_quadratic };
 
@@ -29,14 +34,14 @@ LengthDefinition length_definition_from_name(
 
 struct AutocorrelationOptions {
   Family family = Family::gaussian;
-  std::optional<double> length;  ///< correlation length, > 0, in the length unit of the mesh
+  /// Correlation length, > 0, in the length unit of the mesh.
+  std::optional<double> length = {};
   LengthDefinition length_definition = LengthDefinition::formula;
-  std::optional<double> nu;     ///< smoothness of `matern`, > 0
-  std::optional<double> hurst;  ///< Hurst exponent of `self_affine`, in (0, 1)
-  std::optional<double>
-      rolloff;                  ///< roll-off wavelength of `self_affine`, > 0; instead of `length`
-  std::optional<double> power;  ///< p of `stretched`, in (0, 2]
-  std::optional<double> alpha;  ///< a of `rational_quadratic`, > 0
+  std::optional<double> nu = {};       ///< smoothness of `matern`, > 0
+  std::optional<double> hurst = {};    ///< Hurst exponent of `self_affine`, in (0, 1)
+  std::optional<double> rolloff = {};  ///< roll-off wavelength of it, > 0; instead of `length`
+  std::optional<double> power = {};    ///< p of `stretched`, in (0, 2]
+  std::optional<double> alpha = {};    ///< a of `rational_quadratic`, > 0
 };
 
 /// The same decay in each convention of the field; absent where it does not exist.
@@ -57,7 +62,7 @@ class Autocorrelation {
   ///                     does not exist for the family
   explicit Autocorrelation(const AutocorrelationOptions& options);
 
-  double rho(double r) const;  ///< r >= 0, a length; continuous, in (0, 1]
+  double rho(double r) const;  ///< r >= 0, a length; continuous, in (0, 1], 0 where it underflows
   Family family() const { return family_; }
   double length() const { return length_; }  ///< l of the formula
   EquivalentLengths equivalent_lengths() const;
@@ -77,6 +82,7 @@ class Autocorrelation {
   Family family_;
   double length_ = 0;
   double shape_ = 0;  ///< nu, H, p or a; unused by gaussian and exponential
+  std::shared_ptr<const detail::MaternTable> table_;  ///< for nu without a closed form
 };
 
 }  // namespace roughmesh

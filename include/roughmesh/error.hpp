@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What can go wrong, as three kinds a caller can tell apart.
+// What can go wrong, as kinds a caller can tell apart.
 #pragma once
 
 #include <stdexcept>
@@ -24,6 +24,13 @@ class InputError : public Error {
 /// A file that is not what it claims to be, or is cut short. Names file, line (or byte) and
 /// section. Exit code 3 of the command line.
 class FormatError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// A rough mesh that failed its check and was refused: how many elements, where, what to change.
+/// Exit code 1 of the command line.
+class CheckError : public Error {
  public:
   using Error::Error;
 };

@@ -80,6 +80,7 @@ class FieldSampler {
 
   /// Covariance of points i and j that heights() has by construction, a dot product of two rows of
   /// the very factor that heights() multiplies with.
+  /// @throws InputError  no such point
   double covariance(Index i, Index j) const;
 
   /// Compares covariance() with the rho that was asked for (unclipped), on up to 10^4 pairs and

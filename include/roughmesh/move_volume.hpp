@@ -27,8 +27,10 @@ std::string_view name(VolumeMethod method);
 /// elements moves its surface only.
 class VolumeMover {
  public:
+  /// @param method  of a mesh with volume elements
   /// @throws InputError  an element of order above 1 has a node that would move
-  VolumeMover(const Mesh& mesh, const Surface& surface);
+  VolumeMover(const Mesh& mesh, const Surface& surface,
+              VolumeMethod method = VolumeMethod::harmonic);
   ~VolumeMover();
   VolumeMover(VolumeMover&&) noexcept;
   VolumeMover& operator=(VolumeMover&&) noexcept;

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "command_line.hpp"
+
+#include <algorithm>
+#include <type_traits>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "roughmesh/report.hpp"
+
+namespace roughmesh::app {
+namespace {
+
+const std::string exit_codes =
+    "Exit codes: 0 done, 1 a check failed, 2 usage or input, 3 file format, 4 numerical, 130 "
+    "interrupt.";
+
+/// "--length-definition" from "length_definition"; files stand without dashes, OUTPUT also as -o.
+std::string flag_of(const OptionText& text) {
+  if (text.name == "input") return "INPUT";
+  if (text.name == "output") return "-o,--output";
+  std::string flag = "--" + std::string(text.name);
+  std::replace(flag.begin(), flag.end(), '_', '-');
+  return flag;
+}
+
+template <class Enum>
+std::string listed_choices() {
+  std::string names;
+  for (const Enum choice : Choices<Enum>::values)
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", name(choice));
+  return names;
+}
+
+template <class Member>
+CLI::Option* add_option(CLI::App& app, const OptionText& text, Member& member) {
+  const std::string flag = flag_of(text);
+  const std::string help(text.help);
+  if constexpr (std::is_same_v<Member, bool>) {
+    return app.add_flag(flag, member, help);
+  } else if constexpr (std::is_enum_v<Member>) {
+    const auto set = [&member, flag](const std::string& given) {
+      for (const Member choice : Choices<Member>::values)
+        if (given == name(choice)) {
+          member = choice;
+          return;
+        }
+      throw InputError(
+          fmt::format("{}: {}; must be one of {}", flag, given, listed_choices<Member>()));
+    };
+    return app.add_option_function<std::string>(
+        flag, set,
+        help + ": " + listed_choices<Member>() + "; default " + std::string(name(member)));
+  } else {
+    CLI::Option* option = app.add_option(flag, member, help);
+    if constexpr (std::is_arithmetic_v<Member>)
+      if (member != Member{}) option->description(fmt::format("{}; default {}", help, member));
+    if constexpr (std::is_same_v<Member, std::vector<double>>) option->delimiter(',')->expected(1);
+    if constexpr (std::is_same_v<Member, std::vector<std::string>>) option->expected(1)->take_all();
+    return option;
+  }
+}
+
+void add_options(CLI::App& app, RoughenOptions& options,
+                 const std::vector<std::string_view>& only = {}) {
+  for_each_option(options, [&](const OptionText& text, auto& member) {
+    if (!only.empty() && std::find(only.begin(), only.end(), text.name) == only.end()) return;
+    CLI::Option* option = add_option(app, text, member);
+    if (!text.value.empty()) option->type_name(std::string(text.value));
+  });
+}
+
+/// The parser for one pass over the arguments; writes into `command`.
+struct Parser {
+  explicit Parser(Command& command) {
+    app.name("roughmesh");
+    app.footer(exit_codes +
+               "\n`roughmesh roughen --help` and `roughmesh info --help` list the options.");
+    app.require_subcommand(0, 1);
+    app.add_flag("--version", show_version, "print the version");
+
+    roughen = app.add_subcommand("roughen", "make rough meshes from a smooth one");
+    add_options(*roughen, command.options);
+    roughen
+        ->add_option(
+            "--job", job,
+            "take options from a TOML file or from the report of an earlier run; options given "
+            "here override it")
+        ->type_name("FILE");
+    roughen->footer(exit_codes);
+
+    info =
+        app.add_subcommand("info", "list groups and sizes, and what roughness the mesh can carry");
+    add_options(*info, command.options,
+                {"input", "group", "rms", "length", "acf", "length_definition", "nu", "hurst",
+                 "rolloff", "power", "alpha", "angle", "distance", "edge_angle", "flip", "unit"});
+    info->footer(exit_codes);
+  }
+
+  CLI::App app{
+      "Makes finite element meshes rough, with statistics that are asked for and certified."};
+  CLI::App* roughen = nullptr;
+  CLI::App* info = nullptr;
+  std::string job;
+  bool show_version = false;
+};
+
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  while (!text.empty() && text.back() == ' ') text.pop_back();
+  return text;
+}
+
+/// CLI11 takes its arguments last first.
+void parse(Parser& parser, std::vector<std::string> arguments) {
+  std::reverse(arguments.begin(), arguments.end());
+  try {
+    parser.app.parse(std::move(arguments));
+  } catch (const CLI::CallForHelp&) {
+    throw;
+  } catch (const CLI::ParseError& error) {
+    throw InputError(one_line(error.what()) + "; `roughmesh --help` shows the usage");
+  }
+}
+
+std::string help_text(const Parser& parser) {
+  if (*parser.roughen) return parser.roughen->help();
+  if (*parser.info) return parser.info->help();
+  return parser.app.help();
+}
+
+}  // namespace
+
+Command parse_command_line(const std::vector<std::string>& arguments) {
+  Command command;
+  Parser first(command);
+  try {
+    parse(first, arguments);
+  } catch (const CLI::CallForHelp&) {
+    command.text = help_text(first);
+    return command;
+  }
+  if (first.show_version) return {Verb::version, {}, false, "roughmesh " + version() + "\n"};
+  if (*first.info) {
+    command.verb = Verb::info;
+    command.has_rms = first.info->count("--rms") > 0;
+  } else if (*first.roughen) {
+    command.verb = Verb::roughen;
+    if (!first.job.empty()) {
+      // A second pass over the same arguments, on top of what the job says.
+      command.options = read_job(first.job);
+      Parser second(command);
+      parse(second, arguments);
+    }
+  } else {
+    command.text = first.app.help();
+  }
+  return command;
+}
+
+}  // namespace roughmesh::app

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <map>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "roughmesh/pipeline.hpp"
+
+#include "commands.hpp"
+
+namespace roughmesh::app {
+namespace {
+
+// What the method's source asks for: l of at least 2.5 mesh sizes.
+constexpr double sizes_per_length = 2.5;
+
+void print_mesh(const Mesh& mesh, const std::string& path) {
+  fmt::print("{}  {}, {} nodes, {} elements\n", path, name(mesh.format), mesh.n_nodes(),
+             n_elements(mesh));
+  std::map<std::string, std::int64_t> counts;
+  for (const ElementBlock& block : mesh.blocks) counts[name(block.type)] += block.size();
+  for (const auto& [type, count] : counts) fmt::print("  {:<28} {:>12}\n", type, count);
+  if (!mesh.periodic_links.empty())
+    fmt::print("  {:<28} {:>12}\n", "periodic links", mesh.periodic_links.size());
+}
+
+std::int64_t n_elements_in(const Mesh& mesh, const PhysicalGroup& group) {
+  std::int64_t count = 0;
+  for (const ElementBlock& block : mesh.blocks) {
+    if (dimension(block.type.shape) != group.dimension) continue;
+    for (const Tag tag : block.physical_groups)
+      if (tag == group.tag) count += block.size();
+  }
+  return count;
+}
+
+/// Area and edge lengths of a surface group, or why it has none.
+std::string surface_size(const Mesh& mesh, const PhysicalGroup& group) {
+  if (group.dimension != 2) return "";
+  try {
+    const Surface surface = select_surface(mesh, {.groups = {std::to_string(group.tag)}});
+    return fmt::format("  area {:.6g}  h {:.4g} ({:.4g} to {:.4g})", surface.area,
+                       surface.mesh_size.median, surface.mesh_size.min, surface.mesh_size.max);
+  } catch (const InputError& error) {
+    return fmt::format("  {}", error.what());
+  }
+}
+
+void print_groups(const Mesh& mesh) {
+  if (mesh.groups.empty()) return;
+  fmt::print("\nphysical groups (dimension, number, name, elements)\n");
+  for (const PhysicalGroup& group : mesh.groups)
+    fmt::print("  {}  {:>6}  {:<20} {:>10}{}\n", group.dimension, group.tag,
+               group.name.empty() ? "-" : group.name, n_elements_in(mesh, group),
+               surface_size(mesh, group));
+}
+
+std::string list_of(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& each : names) text += (text.empty() ? "" : ", ") + each;
+  return text;
+}
+
+void print_surface(const Surface& surface, const std::string& unit) {
+  const MeshSize& h = surface.mesh_size;
+  fmt::print("\nsurface {}\n", list_of(surface.groups));
+  fmt::print("  {:<34} {} points, {} faces, {} piece{}, {}\n", "size", surface.n_points(),
+             surface.n_faces(), surface.n_components, surface.n_components == 1 ? "" : "s",
+             surface.n_border_edges == 0
+                 ? "closed"
+                 : fmt::format("open ({} border edges)", surface.n_border_edges));
+  fmt::print("  {:<34} {:.6g} {}^2\n", "area", surface.area, unit);
+  fmt::print("  {:<34} {:.4g} {} (from {:.4g} to {:.4g})\n", "mesh size h (median edge)", h.median,
+             unit, h.min, h.max);
+  fmt::print("  {:<34} {:.4g} {}\n", "shortest correlation length 2.5 h",
+             sizes_per_length * h.median, unit);
+  if (surface.n_sharp_edges > 0)
+    fmt::print("  {:<34} {} (normals are averaged there)\n", "sharp edges", surface.n_sharp_edges);
+  if (surface.n_nonmanifold_edges > 0)
+    fmt::print("  {:<34} {}\n", "edges of three or more faces", surface.n_nonmanifold_edges);
+}
+
+std::string optional_length(const std::optional<double>& value) {
+  return value ? fmt::format("{:.6g}", *value) : "none";
+}
+
+void print_lengths(const Autocorrelation& autocorrelation, const std::string& unit) {
+  const EquivalentLengths lengths = autocorrelation.equivalent_lengths();
+  fmt::print("\ncorrelation length of {}, in {}\n", name(autocorrelation.family()), unit);
+  fmt::print("  {:<34} {:.6g}\n", "formula", lengths.formula);
+  fmt::print("  {:<34} {:.6g}\n", "1/e distance", lengths.one_over_e);
+  fmt::print("  {:<34} {}\n", "integral scale", optional_length(lengths.integral));
+  fmt::print("  {:<34} {:.6g}\n", "Sal (decay to 0.2)", lengths.sal);
+}
+
+void print_resolution(const Resolution& r, bool has_rms, double rms, const std::string& unit) {
+  const double rq = has_rms ? rms : 1.0;
+  const std::string per = has_rms ? "" : " (times Rq)";
+  fmt::print("\nwhat the mesh carries\n");
+  fmt::print("  {:<34} {:.3g}, {:.3g}, {:.3g} (rule: at most 0.4)\n", "h / l along each axis",
+             r.h_over_l[0], r.h_over_l[1], r.h_over_l[2]);
+  fmt::print("  {:<34} {:.2g} %\n", "spectrum above Nyquist pi / h",
+             100 * r.spectrum_share_above_nyquist);
+  fmt::print("  {:<34} {:.2g} %\n", "interpolation error at mid-edge", 100 * r.interpolation_error);
+  fmt::print("  {:<34} {:.3g}{}\n", "expected rms slope on the mesh", rq * r.rms_slope, per);
+  fmt::print("  {:<34} {}\n", "rms slope of the field",
+             r.field_slope ? fmt::format("{:.3g}{}", rq * *r.field_slope, per) : "none");
+  fmt::print("  {:<34} {:.3g} {}{}\n", "largest height to expect", rq * r.expected_max_height, unit,
+             per);
+}
+
+void print_limits(const Resolution& r, const std::string& unit) {
+  fmt::print("  {:<34} {:.4g} {}\n", "smallest radius of curvature", r.min_curvature_radius, unit);
+  fmt::print("  {:<34} {:.4g} {}\n", "largest safe Rq by curvature", r.largest_safe_rq, unit);
+}
+
+/// Without a length asked for, the shortest the mesh carries.
+RoughenOptions with_length(RoughenOptions options, const Surface& surface) {
+  const bool has_length = !options.length.empty() || options.rolloff;
+  if (!has_length) options.length = {sizes_per_length * surface.mesh_size.median};
+  return options;
+}
+
+}  // namespace
+
+void run_info(const RoughenOptions& options, bool has_rms) {
+  if (options.input.empty()) throw InputError("INPUT: missing; give a mesh: roughmesh info MESH");
+  const std::string unit = options.unit.empty() ? "mesh units" : options.unit;
+  if (has_rms && !(std::isfinite(options.rms) && options.rms > 0))
+    throw InputError(fmt::format("--rms: {:g}; must be a positive number", options.rms));
+  const Mesh mesh = read_mesh(options.input);
+  print_mesh(mesh, options.input);
+  print_groups(mesh);
+
+  Surface surface;
+  try {
+    surface = select_surface(mesh, surface_options(options));
+  } catch (const InputError& error) {
+    if (!options.group.empty()) throw;
+    fmt::print("\n{}\n", error.what());
+    return;
+  }
+  print_surface(surface, unit);
+  const FieldModel model = field_model(with_length(options, surface), surface.points);
+  const Resolution resolution = assess_resolution(surface, model.autocorrelation, model.distance);
+  print_lengths(model.autocorrelation, unit);
+  print_resolution(resolution, has_rms, options.rms, unit);
+  print_limits(resolution, unit);
+  const double rq = has_rms ? options.rms : 0.0;
+  for (const std::string& warning : resolution_warnings(resolution, rq))
+    fmt::print("warning: {}\n", warning);
+}
+
+}  // namespace roughmesh::app

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The stages in order: a smooth mesh and options in, rough meshes and a report out.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "roughmesh/check.hpp"
+#include "roughmesh/mesh_io.hpp"
+#include "roughmesh/options.hpp"
+#include "roughmesh/report.hpp"
+
+namespace roughmesh {
+
+/// One realization, as the pipeline hands it over.
+struct RoughMesh {
+  std::uint64_t realization = 0;
+  Mesh mesh;  ///< the input with moved nodes
+  MeshCheck check;
+  std::vector<double> heights;      ///< one per node of the mesh; 0 off the surface
+  std::vector<Vec3> normals;        ///< one per node of the mesh; zero off the surface
+  std::vector<Vec3> displacements;  ///< one per node of the mesh
+};
+
+/// Takes one rough mesh, for example to write it. The last entry of report.realizations belongs to
+/// it; its `path` may be filled in.
+using Deliver = std::function<void(const RoughMesh& rough, Report& report)>;
+
+/// Makes options.realizations rough meshes, one after the other, and hands each to `deliver`; holds
+/// one at a time. `input`, `output` and `report` of the options are not used here.
+///
+/// @throws InputError      options or mesh that cannot be roughened
+/// @throws CheckError      a realization with inverted elements, unless options.allow_invalid; it
+/// is not
+///                         delivered, earlier ones were
+/// @throws NumericalError  a solver did not converge
+Report roughen(const Mesh& mesh, const RoughenOptions& options, const Deliver& deliver);
+
+/// Heights, normals and displacements as point data, for files that carry them.
+std::vector<PointField> point_fields(const RoughMesh& rough);
+
+/// Distance that the options ask for, on these points, and the autocorrelation that goes with it:
+/// of anisotropic lengths, the first finite one.
+struct FieldModel {
+  Autocorrelation autocorrelation;
+  Distance distance;
+};
+FieldModel field_model(const RoughenOptions& options, std::span<const Vec3> points);
+
+}  // namespace roughmesh

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Parts of the MSH reader: sections common to all versions, those of 2.2, those of 4.1.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "roughmesh/mesh.hpp"
+
+#include "node_lookup.hpp"
+#include "scanner.hpp"
+
+namespace roughmesh::detail {
+
+/// What $Entities or $PartitionedEntities say about one entity.
+struct MshEntity {
+  Tag elementary = 0;  ///< its own number, or that of the entity a partition was cut from
+  std::vector<Tag> groups;
+};
+
+using DimensionAndTag = std::pair<int, Tag>;
+
+/// An MSH file while it is read, section by section.
+struct MshReader {
+  explicit MshReader(const FileBytes& file) : scanner(file) {}
+
+  Scanner scanner;
+  Mesh mesh;
+  std::vector<std::uint64_t> offsets;  ///< of the first coordinate of each node
+  NodeLookup lookup;
+  std::map<DimensionAndTag, std::string> names;   ///< of physical groups
+  std::map<DimensionAndTag, MshEntity> entities;  ///< 4.1 only
+  bool has_nodes = false;
+  bool has_elements = false;
+
+  bool is_text() const { return scanner.encoding() == Encoding::text; }
+  /// The bytes that a number takes at least: a digit and a space in text.
+  std::size_t least(std::size_t binary_bytes) const { return is_text() ? 2 : binary_bytes; }
+
+  void start_nodes(Tag n, std::size_t min_bytes_each);  ///< checks the number and reserves
+  void add_position();                                  ///< of the next node
+  void finish_nodes();                                  ///< numbers are unique from here on
+
+  void start_elements();
+  const ElementType& element_type(Tag number) const;
+  void check_element_count(Tag n) const;
+  Index node(Tag tag) const;  ///< fails where no node has the number
+
+  void add_periodic_pair(PeriodicLink& link, Tag slave, Tag master) const;
+};
+
+void read_msh2_nodes(MshReader& reader);
+void read_msh2_elements(MshReader& reader);
+void read_msh2_periodic(MshReader& reader);
+
+void read_msh4_entities(MshReader& reader);
+void read_msh4_partitioned_entities(MshReader& reader);
+void read_msh4_nodes(MshReader& reader);
+void read_msh4_elements(MshReader& reader);
+void read_msh4_periodic(MshReader& reader);
+
+}  // namespace roughmesh::detail

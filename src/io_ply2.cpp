@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// PLY2: two counts, positions, faces by their corners; text in any arrangement of lines.
+#include <array>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "file_formats.hpp"
+#include "scanner.hpp"
+
+namespace roughmesh::detail {
+namespace {
+
+void read_positions(Scanner& scanner, std::size_t n, Mesh& mesh, MeshSource& source) {
+  mesh.nodes.reserve(n);
+  source.offsets.reserve(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    scanner.skip_space();
+    source.offsets.push_back(scanner.offset());
+    const double x = scanner.text_real();
+    const double y = scanner.text_real();
+    const double z = scanner.text_real();
+    mesh.nodes.emplace_back(x, y, z);
+  }
+  mesh.node_tags.resize(n);
+  std::iota(mesh.node_tags.begin(), mesh.node_tags.end(), Tag{1});
+}
+
+void read_face(Scanner& scanner, Tag number, Index n_nodes, std::array<ElementBlock, 2>& blocks) {
+  const Tag n_corners = scanner.text_integer();
+  if (n_corners != 3 && n_corners != 4)
+    scanner.fail(fmt::format("a face with {} corners; split it into triangles", n_corners));
+  ElementBlock& block = blocks[n_corners == 4];
+  block.tags.push_back(number);
+  for (Tag k = 0; k < n_corners; ++k) {
+    const Tag node = scanner.text_integer();
+    if (node < 0 || node >= n_nodes)
+      scanner.fail(
+          fmt::format("node {} does not exist: they are numbered 0 to {}", node, n_nodes - 1));
+    block.nodes.push_back(static_cast<Index>(node));
+  }
+}
+
+void read_faces(Scanner& scanner, std::size_t n, Mesh& mesh) {
+  std::array<ElementBlock, 2> blocks;
+  blocks[0].type = {ElementShape::triangle, 1, 3};
+  blocks[1].type = {ElementShape::quadrangle, 1, 4};
+  for (std::size_t i = 0; i < n; ++i)
+    read_face(scanner, static_cast<Tag>(i) + 1, mesh.n_nodes(), blocks);
+  for (ElementBlock& block : blocks)
+    if (block.size() > 0) mesh.blocks.push_back(std::move(block));
+}
+
+}  // namespace
+
+Mesh read_ply2(FileBytes file) {
+  Scanner scanner(file);
+  const Tag n_announced = scanner.text_integer();
+  const Tag n_faces_announced = scanner.text_integer();
+  if (n_announced > largest_index || n_faces_announced > largest_index)
+    scanner.refuse(fmt::format(
+        "more nodes or faces than the {} that roughmesh handles; split the mesh", largest_index));
+  if (n_announced == 0) scanner.fail("no nodes; save the mesh again");
+  const std::size_t n_nodes = scanner.count(n_announced, 6, "nodes");
+  const std::size_t n_faces = scanner.count(n_faces_announced, 8, "faces");
+  Mesh mesh;
+  auto source = std::make_shared<MeshSource>();
+  read_positions(scanner, n_nodes, mesh, *source);
+  read_faces(scanner, n_faces, mesh);
+  scanner.skip_space();
+  if (!scanner.at_end()) scanner.fail("something stands behind the last face: a count is wrong");
+  source->positions = mesh.nodes;
+  source->file = std::move(file);
+  mesh.format = MeshFormat::ply2;
+  mesh.source = std::move(source);
+  return mesh;
+}
+
+}  // namespace roughmesh::detail

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// VTU (VTK XML unstructured grid), for looking at results: arrays as raw bytes behind the XML.
+// Format: VTK File Formats, https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include <fmt/format.h>
+
+#include "file_formats.hpp"
+
+namespace roughmesh::detail {
+namespace {
+
+// Node order of VTK's linear wedge: its first triangle faces outward, that of Gmsh's prism inward.
+constexpr std::array<int, 6> wedge_order = {0, 2, 1, 3, 5, 4};
+
+std::uint8_t vtk_cell_type(ElementShape shape) {
+  switch (shape) {
+    case ElementShape::point:
+      return 1;
+    case ElementShape::line:
+      return 3;
+    case ElementShape::triangle:
+      return 5;
+    case ElementShape::quadrangle:
+      return 9;
+    case ElementShape::tetrahedron:
+      return 10;
+    case ElementShape::hexahedron:
+      return 12;
+    case ElementShape::prism:
+      return 13;
+    case ElementShape::pyramid:
+      return 14;
+  }
+  return 0;
+}
+
+void check(const Mesh& mesh, const std::vector<PointField>& fields, const OutputFile& output) {
+  const std::string file = output.path().string();
+  for (const ElementBlock& block : mesh.blocks)
+    if (block.type.order > 1)
+      throw InputError(
+          fmt::format("{}: a {} cannot be written to VTU, only elements of order 1; write .msh",
+                      file, name(block.type)));
+  for (const PointField& field : fields)
+    if (field.n_components < 1 ||
+        field.values.size() != mesh.nodes.size() * static_cast<std::size_t>(field.n_components))
+      throw InputError(fmt::format("{}: field {} has {} values where {} nodes with {} each are due",
+                                   file, field.name, field.values.size(), mesh.n_nodes(),
+                                   field.n_components));
+}
+
+std::string escaped(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '&')
+      result += "&amp;";
+    else if (c == '<')
+      result += "&lt;";
+    else if (c == '>')
+      result += "&gt;";
+    else if (c == '"')
+      result += "&quot;";
+    else
+      result += c;
+  }
+  return result;
+}
+
+// Writes the XML and hands out the offsets of the arrays, in the order in which they follow.
+class Header {
+ public:
+  void add(std::string_view text) { xml_ += text; }
+  void add_array(std::string_view type, std::string_view name, int n_components,
+                 std::uint64_t n_bytes) {
+    xml_ += fmt::format(
+        "        <DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" "
+        "offset=\"{}\"/>\n",
+        type, escaped(name), n_components, offset_);
+    offset_ += sizeof(std::uint64_t) + n_bytes;
+  }
+  const std::string& xml() const { return xml_; }
+
+ private:
+  std::string xml_;
+  std::uint64_t offset_ = 0;
+};
+
+struct Sizes {
+  std::uint64_t n_nodes, n_cells, n_corners;
+};
+
+Sizes sizes(const Mesh& mesh) {
+  Sizes result{mesh.nodes.size(), 0, 0};
+  for (const ElementBlock& block : mesh.blocks) {
+    result.n_cells += block.tags.size();
+    result.n_corners += block.nodes.size();
+  }
+  return result;
+}
+
+std::string header(const Sizes& n, const std::vector<PointField>& fields) {
+  constexpr std::uint64_t word = 8;
+  Header h;
+  h.add("<?xml version=\"1.0\"?>\n");
+  h.add(
+      fmt::format("<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"{}\" "
+                  "header_type=\"UInt64\">\n  <UnstructuredGrid>\n",
+                  std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian"));
+  h.add(fmt::format("    <Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", n.n_nodes,
+                    n.n_cells));
+  h.add("      <Points>\n");
+  h.add_array("Float64", "Points", 3, 3 * n.n_nodes * word);
+  h.add("      </Points>\n      <Cells>\n");
+  h.add_array("Int64", "connectivity", 1, n.n_corners * word);
+  h.add_array("Int64", "offsets", 1, n.n_cells * word);
+  h.add_array("UInt8", "types", 1, n.n_cells);
+  h.add("      </Cells>\n      <CellData>\n");
+  h.add_array("Int64", "entity", 1, n.n_cells * word);
+  h.add_array("Int64", "physical_group", 1, n.n_cells * word);
+  h.add("      </CellData>\n      <PointData>\n");
+  for (const PointField& field : fields)
+    h.add_array("Float64", field.name, field.n_components, field.values.size() * word);
+  h.add("      </PointData>\n    </Piece>\n  </UnstructuredGrid>\n");
+  h.add("  <AppendedData encoding=\"raw\">\n   _");
+  return h.xml();
+}
+
+template <typename T>
+void write_value(OutputFile& output, T value) {
+  output.write({reinterpret_cast<const char*>(&value), sizeof value});
+}
+
+template <typename Element, typename Write>
+void write_cells(OutputFile& output, const Mesh& mesh, std::uint64_t n_bytes, Write write) {
+  write_value<std::uint64_t>(output, n_bytes);
+  for (const ElementBlock& block : mesh.blocks)
+    for (Index i = 0; i < block.size(); ++i) write_value<Element>(output, write(block));
+}
+
+void write_doubles(OutputFile& output, const double* values, std::size_t n) {
+  write_value<std::uint64_t>(output, n * sizeof(double));
+  output.write({reinterpret_cast<const char*>(values), n * sizeof(double)});
+}
+
+void write_connectivity(OutputFile& output, const Mesh& mesh, std::uint64_t n_corners) {
+  write_value<std::uint64_t>(output, n_corners * sizeof(std::int64_t));
+  for (const ElementBlock& block : mesh.blocks)
+    for (Index i = 0; i < block.size(); ++i) {
+      const auto element = block.element(i);
+      for (std::size_t k = 0; k < element.size(); ++k)
+        write_value<std::int64_t>(
+            output, block.type.shape == ElementShape::prism ? element[wedge_order[k]] : element[k]);
+    }
+}
+
+void write_arrays(OutputFile& output, const Mesh& mesh, const Sizes& n) {
+  static_assert(sizeof(Vec3) == 3 * sizeof(double));
+  const std::uint64_t cell_bytes = n.n_cells * sizeof(std::int64_t);
+  write_doubles(output, mesh.nodes.empty() ? nullptr : mesh.nodes[0].data(), 3 * n.n_nodes);
+  write_connectivity(output, mesh, n.n_corners);
+  std::int64_t end = 0;
+  write_cells<std::int64_t>(output, mesh, cell_bytes,
+                            [&](const ElementBlock& block) { return end += block.type.n_nodes; });
+  write_cells<std::uint8_t>(output, mesh, n.n_cells, [](const ElementBlock& block) {
+    return vtk_cell_type(block.type.shape);
+  });
+  write_cells<std::int64_t>(output, mesh, cell_bytes,
+                            [](const ElementBlock& block) { return block.entity; });
+  write_cells<std::int64_t>(output, mesh, cell_bytes, [](const ElementBlock& block) {
+    return block.physical_groups.empty() ? 0 : block.physical_groups.front();
+  });
+}
+
+}  // namespace
+
+void write_vtu(const Mesh& mesh, const std::vector<PointField>& fields, OutputFile& output) {
+  check(mesh, fields, output);
+  const Sizes n = sizes(mesh);
+  output.write(header(n, fields));
+  write_arrays(output, mesh, n);
+  for (const PointField& field : fields)
+    write_doubles(output, field.values.data(), field.values.size());
+  output.write("\n  </AppendedData>\n</VTKFile>\n");
+}
+
+}  // namespace roughmesh::detail

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What read_mesh keeps of a file so that write_mesh can copy it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "roughmesh/mesh.hpp"
+
+namespace roughmesh {
+namespace detail {
+
+/// A whole file in memory. It is read, not mapped: a mapped file that another process cuts short
+/// kills the program.
+struct FileBytes {
+  std::filesystem::path path;
+  std::unique_ptr<char[]> data;  ///< size bytes and a final '\0', at which number parsers stop
+  std::size_t size = 0;
+
+  std::string_view view() const { return {data.get(), size}; }
+};
+
+/// @throws InputError  missing, a directory, no permission, not a regular file
+FileBytes read_file(const std::filesystem::path& path);
+
+enum class NumberFormat : std::uint8_t { text, float32, float64 };
+
+/// Where the numbers of one triangle of an STL stand.
+struct StlFacet {
+  std::uint64_t normal = 0;                 ///< offset of the first of three numbers
+  std::array<std::uint64_t, 3> vertices{};  ///< likewise for each corner
+  std::array<Index, 3> nodes{};             ///< of the mesh, one for each corner
+};
+
+}  // namespace detail
+
+class MeshSource {
+ public:
+  detail::FileBytes file;
+  detail::NumberFormat coordinates = detail::NumberFormat::text;
+  bool swap_bytes = false;               ///< the file's byte order is not this machine's
+  std::vector<Vec3> positions;           ///< n positions as they were read
+  std::vector<std::uint64_t> offsets;    ///< n offsets of first coordinates, ascending; not for STL
+  std::vector<detail::StlFacet> facets;  ///< STL only, ascending
+};
+
+}  // namespace roughmesh

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "roughmesh/options.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <numbers>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include "options_json.hpp"
+
+namespace roughmesh {
+namespace {
+
+using nlohmann::json;
+
+json toml_to_json(const toml::node& node, const std::string& source) {
+  if (const auto* table = node.as_table()) {
+    json object = json::object();
+    for (const auto& [key, value] : *table)
+      object[std::string(key.str())] = toml_to_json(value, source);
+    return object;
+  }
+  if (const auto* array = node.as_array()) {
+    json list = json::array();
+    for (const toml::node& item : *array) list.push_back(toml_to_json(item, source));
+    return list;
+  }
+  if (const auto* text = node.as_string()) return text->get();
+  if (const auto* number = node.as_integer()) return number->get();
+  if (const auto* truth = node.as_boolean()) return truth->get();
+  if (const auto* number = node.as_floating_point()) {
+    // JSON holds no infinity; the reader of options takes the text.
+    if (std::isinf(number->get()) && number->get() > 0) return "inf";
+    return number->get();
+  }
+  throw InputError(fmt::format("{}: dates and times are no option values", source));
+}
+
+json parse_toml(const std::string& text, const std::string& source) {
+  try {
+    return toml_to_json(toml::parse(text), source);
+  } catch (const toml::parse_error& error) {
+    throw FormatError(
+        fmt::format("{}:{}: not TOML: {}", source, error.source().begin.line, error.description()));
+  }
+}
+
+json parse_json(const std::string& text, const std::string& source) {
+  json object = json::parse(text, nullptr, false);
+  if (object.is_discarded())
+    throw FormatError(fmt::format("{}: broken JSON; write it anew", source));
+  if (object.is_object() && object.contains("request")) return object["request"];
+  return object;
+}
+
+std::string read_text(const std::filesystem::path& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error))
+    throw InputError(fmt::format("{}: is a folder; give a job file", path.string()));
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(fmt::format("{}: cannot be read; check the path", path.string()));
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+void require(bool good, std::string_view option, double value, std::string_view range) {
+  if (!good) throw InputError(fmt::format("{}: {:g}; must be {}", option, value, range));
+}
+
+/// A {realization} or {realization:0N} found in a template.
+struct Placeholder {
+  std::size_t begin = std::string::npos, end = 0;
+  std::size_t width = 0;
+};
+
+Placeholder find_placeholder(const std::string& text, std::size_t from) {
+  static const std::string opening = "{realization";
+  for (std::size_t at = text.find(opening, from); at != std::string::npos;
+       at = text.find(opening, at + 1)) {
+    std::size_t end = at + opening.size();
+    std::size_t width = 0;
+    if (text.compare(end, 2, ":0") == 0) {
+      for (end += 2; end < text.size() && std::isdigit(static_cast<unsigned char>(text[end]));
+           ++end)
+        width = std::min<std::size_t>(width * 10 + static_cast<std::size_t>(text[end] - '0'), 20);
+    }
+    if (end < text.size() && text[end] == '}') return {at, end + 1, width};
+  }
+  return {};
+}
+
+template <class Replace>
+std::string replace_placeholders(const std::string& text, Replace&& replacement) {
+  std::string result;
+  std::size_t from = 0;
+  for (Placeholder found = find_placeholder(text, 0); found.begin != std::string::npos;
+       found = find_placeholder(text, from)) {
+    result += text.substr(from, found.begin - from) + replacement(found.width);
+    from = found.end;
+  }
+  return result + text.substr(from);
+}
+
+void check_ensemble(const RoughenOptions& o) {
+  require(o.realizations >= 1, "--realizations", static_cast<double>(o.realizations), "at least 1");
+  if (o.first > std::numeric_limits<std::uint64_t>::max() - o.realizations)
+    throw InputError(
+        fmt::format("--first: {}; --first plus --realizations must stay below 2^64", o.first));
+  const bool has_placeholder = find_placeholder(o.output, 0).begin != std::string::npos;
+  if (o.realizations > 1 && !o.output.empty() && !has_placeholder)
+    throw InputError(
+        fmt::format("OUTPUT: {}; must contain {{realization}} when --realizations is {}", o.output,
+                    o.realizations));
+}
+
+void check_lengths(const RoughenOptions& o) {
+  if (o.length.size() > 3)
+    throw InputError(fmt::format("--length: {} numbers; give one, two or three", o.length.size()));
+  if (o.angle != 0 && o.length.size() < 2)
+    throw InputError(
+        fmt::format("--angle: {:g}; turns the axes of anisotropic lengths, give --length "
+                    "L,LY,LZ",
+                    o.angle));
+  if (o.length.size() > 1 && o.distance != DistanceKind::euclidean)
+    throw InputError(fmt::format(
+        "--length: {} numbers; anisotropic lengths need --distance euclidean", o.length.size()));
+}
+
+}  // namespace
+
+std::string_view name(VolumeChoice choice) {
+  return choice == VolumeChoice::move ? "move" : "none";
+}
+
+void check_options(const RoughenOptions& o) {
+  require(std::isfinite(o.rms) && o.rms > 0, "--rms", o.rms, "a positive number");
+  require(std::isfinite(o.tolerance) && o.tolerance > 0, "--tolerance", o.tolerance,
+          "a positive number");
+  require(o.edge_angle > 0 && o.edge_angle <= 180, "--edge-angle", o.edge_angle,
+          "above 0 and at most 180 degrees");
+  require(std::isfinite(o.angle), "--angle", o.angle, "a finite number of degrees");
+  require(o.threads >= 0 && o.threads <= 4096, "--threads", o.threads, "from 0 to 4096");
+  check_ensemble(o);
+  check_lengths(o);
+  method_from_name(o.method);
+  // Throws for a parameter that is missing, foreign to the family or out of range.
+  Autocorrelation{autocorrelation_options(o)};
+}
+
+RoughenOptions read_job(const std::filesystem::path& path) {
+  const std::string text = read_text(path);
+  const std::string source = path.string();
+  const std::size_t start = text.find_first_not_of(" \t\r\n");
+  const bool is_json = start != std::string::npos && text[start] == '{';
+  return detail::options_from_json(is_json ? parse_json(text, source) : parse_toml(text, source),
+                                   source);
+}
+
+std::string output_path(const std::string& output, std::uint64_t realization) {
+  return replace_placeholders(
+      output, [&](std::size_t width) { return fmt::format("{:0{}}", realization, width); });
+}
+
+std::string report_path(const RoughenOptions& options) {
+  if (!options.report.empty()) return options.report;
+  const std::filesystem::path output =
+      replace_placeholders(options.output, [](std::size_t) { return std::string(); });
+  return (output.parent_path() / (output.stem().string() + ".report.json")).string();
+}
+
+AutocorrelationOptions autocorrelation_options(const RoughenOptions& o) {
+  AutocorrelationOptions result{.family = o.acf,
+                                .length = std::nullopt,
+                                .length_definition = o.length_definition,
+                                .nu = o.nu,
+                                .hurst = o.hurst,
+                                .rolloff = o.rolloff,
+                                .power = o.power,
+                                .alpha = o.alpha};
+  // Anisotropic lengths scale the distance; rho belongs to the first finite one. A single length is
+  // taken as it is, so that the family can refuse it by name.
+  if (!o.length.empty()) result.length = o.length.front();
+  if (o.length.size() > 1)
+    for (const double length : o.length)
+      if (std::isfinite(length)) {
+        result.length = length;
+        break;
+      }
+  return result;
+}
+
+SurfaceOptions surface_options(const RoughenOptions& o) {
+  return {
+      .groups = o.group, .flip = o.flip, .sharp_angle = o.edge_angle / 180.0 * std::numbers::pi};
+}
+
+FieldOptions field_options(const RoughenOptions& o) {
+  return {.method = method_from_name(o.method), .tolerance = o.tolerance};
+}
+
+}  // namespace roughmesh

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "options_json.hpp"
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <type_traits>
+
+#include <fmt/format.h>
+
+namespace roughmesh::detail {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+/// Thrown by the readers below; caught where the key is known.
+struct WrongType {
+  std::string expected;
+};
+
+// JSON has no infinity; a streak's length is the string "inf".
+ordered_json number_to_json(double value) {
+  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+  return value;
+}
+
+double number_from_json(const json& value) {
+  if (value.is_string() && value == "inf") return std::numeric_limits<double>::infinity();
+  if (!value.is_number()) throw WrongType{"a number"};
+  return value.get<double>();
+}
+
+ordered_json to_json_value(const std::string& value) { return value; }
+ordered_json to_json_value(bool value) { return value; }
+ordered_json to_json_value(int value) { return value; }
+ordered_json to_json_value(std::uint64_t value) { return value; }
+ordered_json to_json_value(double value) { return number_to_json(value); }
+ordered_json to_json_value(const std::optional<double>& value) {
+  return value ? number_to_json(*value) : ordered_json();
+}
+ordered_json to_json_value(const std::vector<std::string>& value) { return value; }
+ordered_json to_json_value(const std::vector<double>& value) {
+  ordered_json list = ordered_json::array();
+  for (const double number : value) list.push_back(number_to_json(number));
+  return list;
+}
+template <class Enum>
+requires std::is_enum_v<Enum> ordered_json to_json_value(Enum value) { return name(value); }
+
+void from_json_value(const json& value, std::string& target) {
+  if (!value.is_string()) throw WrongType{"a text"};
+  target = value.get<std::string>();
+}
+void from_json_value(const json& value, bool& target) {
+  if (!value.is_boolean()) throw WrongType{"true or false"};
+  target = value.get<bool>();
+}
+void from_json_value(const json& value, int& target) {
+  if (!value.is_number_integer()) throw WrongType{"a whole number"};
+  const auto number = value.get<std::int64_t>();
+  if (number < 0 || number > std::numeric_limits<int>::max()) throw WrongType{"a number from 0 on"};
+  target = static_cast<int>(number);
+}
+void from_json_value(const json& value, std::uint64_t& target) {
+  const bool fits =
+      value.is_number_unsigned() || (value.is_number_integer() && value.get<std::int64_t>() >= 0);
+  if (!fits) throw WrongType{"a whole number from 0 on"};
+  target = value.get<std::uint64_t>();
+}
+void from_json_value(const json& value, double& target) { target = number_from_json(value); }
+void from_json_value(const json& value, std::optional<double>& target) {
+  target = value.is_null() ? std::nullopt : std::optional(number_from_json(value));
+}
+void from_json_value(const json& value, std::vector<std::string>& target) {
+  target.clear();
+  const auto add = [&](const json& item) {
+    if (!item.is_string() && !item.is_number_integer())
+      throw WrongType{"a list of names or numbers"};
+    target.push_back(item.is_string() ? item.get<std::string>() : item.dump());
+  };
+  if (!value.is_array()) return add(value);
+  for (const json& item : value) add(item);
+}
+void from_json_value(const json& value, std::vector<double>& target) {
+  target.clear();
+  if (!value.is_array()) return target.push_back(number_from_json(value));
+  for (const json& item : value) target.push_back(number_from_json(item));
+}
+template <class Enum>
+requires std::is_enum_v<Enum>
+void from_json_value(const json& value, Enum& target) {
+  std::string expected = "one of";
+  for (const Enum choice : Choices<Enum>::values) {
+    if (value.is_string() && value.get<std::string>() == name(choice)) {
+      target = choice;
+      return;
+    }
+    expected += fmt::format(" {}", name(choice));
+  }
+  throw WrongType{expected};
+}
+
+}  // namespace
+
+ordered_json options_to_json(const RoughenOptions& options) {
+  ordered_json object;
+  for_each_option(options, [&](const OptionText& text, const auto& member) {
+    object[std::string(text.name)] = to_json_value(member);
+  });
+  return object;
+}
+
+RoughenOptions options_from_json(const json& object, const std::string& source) {
+  if (!object.is_object())
+    throw InputError(fmt::format("{}: not a job: expected a table of options", source));
+  RoughenOptions options;
+  std::set<std::string> known;
+  for_each_option(options, [&](const OptionText& text, auto& member) {
+    const std::string key(text.name);
+    known.insert(key);
+    const auto found = object.find(key);
+    if (found == object.end()) return;
+    try {
+      from_json_value(*found, member);
+    } catch (const WrongType& wrong) {
+      throw InputError(
+          fmt::format("{}: {} = {}; must be {}", source, key, found->dump(), wrong.expected));
+    }
+  });
+  for (const auto& [key, value] : object.items())
+    if (!known.contains(key))
+      throw InputError(
+          fmt::format("{}: unknown key {}; `roughmesh roughen --help` lists the options, "
+                      "written with _ for -",
+                      source, key));
+  return options;
+}
+
+}  // namespace roughmesh::detail

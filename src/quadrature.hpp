@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Quadrature of smooth functions, to nearly the rounding error of a double.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace roughmesh::detail {
+
+/// log of the integral of exp(-shape (e^s - 1 - s)) over all s, that is of
+/// Gamma(shape) (e / shape)^shape: what normalizes the law of log(G / shape), G ~ Gamma(shape).
+double log_gamma_normalization(double shape);
+
+/// E[f(s)] with G = shape e^s distributed as Gamma(shape, 1), for f analytic near the real axis
+/// and negligible below `lowest`. The trapezoidal rule converges exponentially here: L. N.
+/// Trefethen and J. A. C. Weideman (2014), SIAM Rev. 56:385-458, doi:10.1137/130932132.
+template <class Function>
+double gamma_expectation(double shape, double lowest, const Function& f) {
+  constexpr double negligible = 45;  // exp(-45) = 3e-20
+  const double step = std::min(0.15, 0.6 / std::sqrt(shape));
+  const auto exponent = [&](double s) { return shape * (std::expm1(s) - s); };
+  double sum = 0;
+  for (double k = 0; exponent(k * step) < negligible; ++k)
+    sum += f(k * step) * std::exp(-exponent(k * step));
+  for (double k = -1; k * step > lowest && exponent(k * step) < negligible; --k)
+    sum += f(k * step) * std::exp(-exponent(k * step));
+  return sum * step * std::exp(-log_gamma_normalization(shape));
+}
+
+/// Integral of f over (0, width) by the double exponential rule; f(from_left, from_right) is given
+/// its distance from both ends, so that algebraic singularities there cost no digits. H. Takahasi
+/// and M. Mori (1974), Publ. RIMS 9:721-741, doi:10.2977/prims/1195192451.
+template <class Function>
+double tanh_sinh(double width, const Function& f) {
+  constexpr int half_steps = 56;
+  constexpr double step = 3.4 / half_steps;
+  double sum = 0;
+  for (int k = -half_steps; k <= half_steps; ++k) {
+    const double t = k * step;
+    const double y = std::numbers::pi * std::sinh(t);
+    const double left = width / (1 + std::exp(-y));
+    const double right = width / (1 + std::exp(y));
+    sum += f(left, right) * left * right * std::cosh(t);
+  }
+  return sum * step * std::numbers::pi / width;
+}
+
+}  // namespace roughmesh::detail

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "roughmesh/report.hpp"
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "options_json.hpp"
+
+namespace roughmesh {
+namespace {
+
+using nlohmann::ordered_json;
+
+// JSON has no infinity and no NaN; what does not exist is null.
+ordered_json number(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json();
+}
+
+template <class T>
+ordered_json optional(const std::optional<T>& value) {
+  if constexpr (std::is_same_v<T, double>) return value ? number(*value) : ordered_json();
+  return value ? ordered_json(*value) : ordered_json();
+}
+
+template <std::size_t N>
+ordered_json list(const std::array<double, N>& values) {
+  ordered_json result = ordered_json::array();
+  for (const double value : values) result.push_back(number(value));
+  return result;
+}
+
+ordered_json input_json(const Report& r) {
+  return {{"path", r.request.input},
+          {"format", r.format},
+          {"nodes", r.n_nodes},
+          {"elements", r.n_elements}};
+}
+
+ordered_json surface_json(const Report& r) {
+  return {{"groups", r.surface_groups},
+          {"nodes", r.surface_nodes},
+          {"elements", r.surface_elements},
+          {"area", number(r.surface_area)},
+          {"mesh_size",
+           {{"min", number(r.mesh_size.min)},
+            {"median", number(r.mesh_size.median)},
+            {"max", number(r.mesh_size.max)}}},
+          {"components", r.surface_components},
+          {"border_edges", r.border_edges},
+          {"sharp_edges", r.sharp_edges},
+          {"nonmanifold_edges", r.nonmanifold_edges}};
+}
+
+ordered_json resolution_json(const Resolution& r) {
+  return {{"lengths", list(r.lengths)},
+          {"h_over_l", list(r.h_over_l)},
+          {"spectrum_share_above_nyquist", number(r.spectrum_share_above_nyquist)},
+          {"interpolation_error", number(r.interpolation_error)},
+          {"rms_slope", number(r.rms_slope)},
+          {"field_slope", optional(r.field_slope)},
+          {"expected_max_height", number(r.expected_max_height)},
+          {"min_curvature_radius", number(r.min_curvature_radius)},
+          {"largest_safe_rq", number(r.largest_safe_rq)}};
+}
+
+ordered_json field_json(const Report& r) {
+  return {{"method", name(r.field.method)},
+          {"tolerance", r.request.tolerance},
+          {"covariance_error", number(r.audit.covariance_error)},
+          {"audited_pairs", r.audit.n_pairs},
+          {"equivalent_lengths",
+           {{"formula", number(r.lengths.formula)},
+            {"one_over_e", number(r.lengths.one_over_e)},
+            {"integral", optional(r.lengths.integral)},
+            {"sal", number(r.lengths.sal)}}},
+          {"factorization", name(r.field.factorization)},
+          {"rank", r.field.rank},
+          {"negative_eigenvalues", r.field.negative_eigenvalues},
+          {"smallest_eigenvalue", optional(r.field.smallest_eigenvalue)},
+          {"smallest_correlation", number(r.field.smallest_correlation)},
+          {"variance_change", number(r.field.variance_change)}};
+}
+
+ordered_json realization_json(const RealizationReport& r) {
+  return {{"index", r.index},
+          {"path", r.path},
+          {"sq", number(r.statistics.sq)},
+          {"sq_expected", number(r.sq_expected)},
+          {"sq_expected_std", number(r.sq_expected_std)},
+          {"ssk", number(r.statistics.ssk)},
+          {"sku", number(r.statistics.sku)},
+          {"sz", number(r.statistics.sz)},
+          {"mean", number(r.statistics.mean)},
+          {"inverted_elements", r.inverted_elements},
+          {"min_quality", number(r.min_quality)},
+          {"min_quality_before", number(r.min_quality_before)},
+          {"self_intersections", optional(r.self_intersections)},
+          {"volume_method", name(r.volume_method)}};
+}
+
+ordered_json timings_json(const Timings& t) {
+  return {{"read", t.read},   {"surface", t.surface},   {"field", t.field},
+          {"audit", t.audit}, {"displace", t.displace}, {"volume", t.volume},
+          {"check", t.check}, {"write", t.write},       {"total", t.total}};
+}
+
+}  // namespace
+
+std::string to_json(const Report& report) {
+  ordered_json object;
+  object["roughmesh"] = version();
+  object["input"] = input_json(report);
+  object["request"] = detail::options_to_json(report.request);
+  object["surface"] = surface_json(report);
+  object["resolution"] = resolution_json(report.resolution);
+  object["field"] = field_json(report);
+  object["realizations"] = ordered_json::array();
+  for (const RealizationReport& realization : report.realizations)
+    object["realizations"].push_back(realization_json(realization));
+  object["warnings"] = report.warnings;
+  object["timings"] = timings_json(report.timings);
+  object["citations"] = report.citations;
+  return object.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string version() { return ROUGHMESH_VERSION; }
+
+}  // namespace roughmesh

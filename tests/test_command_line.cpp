@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The command as users meet it: files, exit codes, one line per failure, nothing half-written.
+#include <csignal>
+#include <regex>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "roughmesh/mesh_io.hpp"
+#include "roughmesh/options.hpp"
+
+#include "support/files.hpp"
+#include "support/meshes.hpp"
+#include "support/process.hpp"
+
+using namespace roughmesh;
+using test::Outcome;
+using test::TemporaryFolder;
+
+namespace {
+
+const std::string command = ROUGHMESH_APP;
+
+class CommandLine : public testing::Test {
+ protected:
+  void SetUp() override {
+    write_mesh(test::icosphere(2), folder / "sphere.msh");
+    write_mesh(test::ball_in_box(8), folder / "ball.msh");
+  }
+
+  Outcome run(const std::string& arguments) {
+    return test::run_in(folder, command + " " + arguments);
+  }
+
+  TemporaryFolder folder;
+};
+
+const std::string sphere_job = "roughen sphere.msh --rms 0.02 --length 0.5 ";
+
+void expect_failure(const Outcome& outcome, int exit_code, const std::string& what) {
+  EXPECT_EQ(outcome.exit_code, exit_code) << what << ": " << outcome.err;
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1)
+      << what << ": " << outcome.err;
+  EXPECT_EQ(outcome.out, "") << what;
+}
+
+}  // namespace
+
+TEST_F(CommandLine, RoughensAndReports) {
+  const Outcome outcome = run(sphere_job + "-o rough_{realization:02}.msh --realizations 3");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(folder.names(),
+            (std::vector<std::string>{"ball.msh", "rough_.report.json", "rough_00.msh",
+                                      "rough_01.msh", "rough_02.msh", "sphere.msh"}));
+  const auto report = nlohmann::json::parse(test::read_bytes(folder / "rough_.report.json"));
+  EXPECT_EQ(report["realizations"][2]["path"], "rough_02.msh");
+}
+
+TEST_F(CommandLine, RealizationSevenOfTenIsFirstSevenByteForByte) {
+  ASSERT_EQ(run(sphere_job + "-o a_{realization}.msh --realizations 10").exit_code, 0);
+  ASSERT_EQ(run(sphere_job + "-o b.msh --first 7").exit_code, 0);
+  EXPECT_EQ(test::read_bytes(folder / "a_7.msh"), test::read_bytes(folder / "b.msh"));
+  EXPECT_NE(test::read_bytes(folder / "a_6.msh"), test::read_bytes(folder / "b.msh"));
+}
+
+TEST_F(CommandLine, AReportReproducesItsMeshByteForByte) {
+  ASSERT_EQ(
+      run("roughen ball.msh -o rough.msh --group surface --rms 0.01 --length 0.4 --acf matern "
+          "--nu 1.5 --seed 99 --threads 2")
+          .exit_code,
+      0);
+  const std::string bytes = test::read_bytes(folder / "rough.msh");
+  std::filesystem::rename(folder / "rough.report.json", folder / "job.json");
+  std::filesystem::remove(folder / "rough.msh");
+  const Outcome again = run("roughen --job job.json");
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(test::read_bytes(folder / "rough.msh"), bytes);
+  // Arguments override the job.
+  EXPECT_EQ(run("roughen --job job.json --seed 98 -o other.msh").exit_code, 0);
+  EXPECT_NE(test::read_bytes(folder / "other.msh"), bytes);
+}
+
+TEST_F(CommandLine, WritesOverItsInput) {
+  ASSERT_EQ(run(sphere_job + "-o rough.msh").exit_code, 0);
+  ASSERT_EQ(run(sphere_job + "-o sphere.msh").exit_code, 0);
+  EXPECT_EQ(test::read_bytes(folder / "rough.msh"), test::read_bytes(folder / "sphere.msh"));
+}
+
+// One declaration: what C++ has, --help shows, a report holds and a job takes.
+TEST_F(CommandLine, HelpReportAndOptionsAgree) {
+  const Outcome help = run("roughen --help");
+  EXPECT_EQ(help.exit_code, 0);
+  ASSERT_EQ(run(sphere_job + "-o rough.msh").exit_code, 0);
+  const auto request =
+      nlohmann::json::parse(test::read_bytes(folder / "rough.report.json"))["request"];
+  RoughenOptions options;
+  std::size_t count = 0;
+  for_each_option(options, [&](const OptionText& text, auto&) {
+    ++count;
+    EXPECT_TRUE(request.contains(std::string(text.name))) << text.name;
+    std::string flag = "--" + std::regex_replace(std::string(text.name), std::regex("_"), "-");
+    if (text.name == "input") flag = "INPUT";
+    EXPECT_NE(help.out.find(flag), std::string::npos) << flag;
+  });
+  EXPECT_EQ(request.size(), count);
+}
+
+TEST_F(CommandLine, VersionAndHelpSucceed) {
+  EXPECT_TRUE(std::regex_match(run("--version").out, std::regex("roughmesh \\d+\\.\\d+\\.\\d+\n")));
+  EXPECT_NE(run("--help").out.find("roughen"), std::string::npos);
+  EXPECT_EQ(run("").exit_code, 0);
+  EXPECT_NE(run("info --help").out.find("--group"), std::string::npos);
+}
+
+TEST_F(CommandLine, EveryOptionRefusesNonsenseWithCodeTwo) {
+  RoughenOptions options;
+  for_each_option(options, [&](const OptionText& text, auto& member) {
+    using Member = std::decay_t<decltype(member)>;
+    const std::string name(text.name);
+    std::string flag = "--" + std::regex_replace(name, std::regex("_"), "-");
+    const bool is_number = std::is_arithmetic_v<Member> ||
+                           std::is_same_v<Member, std::optional<double>> ||
+                           std::is_same_v<Member, std::vector<double>>;
+    std::vector<std::string> nonsense;
+    if (std::is_same_v<Member, bool>)
+      nonsense = {"=maybe"};
+    else if (is_number)
+      nonsense = {" x", " -1e999", " 1..2", " ''", " nan"};
+    else if (std::is_enum_v<Member> || name == "method")
+      nonsense = {" nonsense", " ''"};
+    else if (name == "group")
+      nonsense = {" nobody", " -7", " 99999999999999999999999"};
+    else if (name == "input")
+      return expect_failure(run("roughen nothing.msh -o rough.msh --rms 1 --length 1"), 2, name);
+    else if (name == "output")
+      nonsense = {" rough.xyz", " no/such/folder/rough.msh", " /", " ''"};
+    else if (name == "report")
+      nonsense = {" no/such/folder/r.json"};
+    for (const std::string& value : nonsense) {
+      const std::string base = name == "output" ? sphere_job : sphere_job + "-o rough.msh ";
+      expect_failure(run(base + flag + value), 2, flag + value);
+    }
+  });
+}
+
+TEST_F(CommandLine, WrongUsageIsCodeTwo) {
+  for (const std::string arguments :
+       {"roughen", "roughen sphere.msh", "roughen sphere.msh -o a.msh", "frobnicate",
+        "roughen --frob", "roughen sphere.msh -o a.msh --rms 1",
+        "roughen sphere.msh -o a.msh --length 1", "info", "info nothing.msh",
+        "roughen sphere.msh extra -o a.msh --rms 1 --length 1", "roughen --job nothing.json",
+        "roughen sphere.msh -o a.msh --rms 1 --length 1 --realizations 2",
+        "roughen ball.msh -o a.msh --rms 0.01 --length 0.3",
+        "roughen . -o a.msh --rms 1 --length 1"})
+    expect_failure(run(arguments), 2, arguments);
+}
+
+TEST_F(CommandLine, AFileThatIsNoMeshIsCodeThree) {
+  test::write_bytes(folder / "script.msh",
+                    "SystemCall \"touch executed\";\nPoint(1) = {0,0,0,1};\n");
+  test::write_bytes(folder / "empty.msh", "");
+  const std::string whole = test::read_bytes(folder / "sphere.msh");
+  test::write_bytes(folder / "half.msh", whole.substr(0, whole.size() / 2));
+  for (const std::string file : {"script.msh", "empty.msh", "half.msh"}) {
+    expect_failure(run("roughen " + file + " -o rough.msh --rms 1 --length 1"), 3, file);
+    expect_failure(run("info " + file), 3, file);
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "executed"));
+}
+
+TEST_F(CommandLine, InvertedElementsAreCodeOneAndNothingIsWritten) {
+  const auto before = folder.names();
+  const std::string job = "roughen ball.msh -o rough.msh --group surface --rms 0.3 --length 0.2 ";
+  const Outcome refused = run(job);
+  expect_failure(refused, 1, "inverted");
+  EXPECT_NE(refused.err.find("--rms"), std::string::npos);
+  EXPECT_EQ(folder.names(), before);
+  const Outcome allowed = run(job + "--allow-invalid");
+  EXPECT_EQ(allowed.exit_code, 0);
+  EXPECT_NE(allowed.err.find("warning"), std::string::npos);
+}
+
+TEST_F(CommandLine, AFullDiskLeavesNoPartialFile) {
+  const auto before = folder.names();
+  // A file size limit of 8 blocks stands in for a full disk: the write fails in the middle.
+  const Outcome outcome = run(sphere_job + "-o rough.msh; exit $?");
+  ASSERT_EQ(outcome.exit_code, 0);
+  std::filesystem::remove(folder / "rough.msh");
+  std::filesystem::remove(folder / "rough.report.json");
+  const Outcome full =
+      test::run_in(folder, "ulimit -f 8; " + command + " " + sphere_job + "-o rough.msh");
+  EXPECT_EQ(full.exit_code, 2);
+  EXPECT_NE(full.err.find("rough.msh"), std::string::npos) << full.err;
+  EXPECT_EQ(folder.names(), before);
+}
+
+TEST_F(CommandLine, AnInterruptKeepsFinishedRealizationsOnly) {
+  // Runs until a few realizations are there, then interrupts; 10^6 would take minutes.
+  const Outcome outcome = test::run_in(
+      folder, command + " " + sphere_job +
+                  "-o r_{realization}.msh --realizations 1000000 & pid=$!; "
+                  "while [ ! -e r_3.msh ]; do sleep 0.02; done; kill -INT $pid; wait $pid");
+  EXPECT_EQ(outcome.exit_code, 130);
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  const std::size_t size = std::filesystem::file_size(folder / "r_0.msh");
+  int n_meshes = 0;
+  for (const std::string& name : folder.names()) {
+    if (name == "ball.msh" || name == "sphere.msh") continue;
+    ASSERT_TRUE(std::regex_match(name, std::regex("r_\\d+\\.msh"))) << name;
+    const Mesh mesh = read_mesh(folder / name);  // whole
+    EXPECT_EQ(mesh.n_nodes(), 162);
+    EXPECT_GT(std::filesystem::file_size(folder / name), size / 2);
+    ++n_meshes;
+  }
+  EXPECT_GE(n_meshes, 4);
+}
+
+TEST_F(CommandLine, InfoStatesGroupsAndResolution) {
+  const Outcome outcome = run("info ball.msh --group surface --length 0.3 --rms 0.01");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const std::string text :
+       {"surface", "outer", "inside", "outside", "h / l", "Sal", "largest safe Rq"})
+    EXPECT_NE(outcome.out.find(text), std::string::npos) << text;
+  EXPECT_EQ(run("info ball.msh").exit_code, 0);  // several surfaces: lists them
+}

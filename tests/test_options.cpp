@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Options are declared once: C++, job file and report agree, and nonsense is refused by name.
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "roughmesh/options.hpp"
+
+#include "options_json.hpp"
+#include "support/files.hpp"
+
+using namespace roughmesh;
+
+namespace {
+
+RoughenOptions good_options() {
+  RoughenOptions options;
+  options.rms = 2;
+  options.length = {10};
+  return options;
+}
+
+/// Message of the InputError that check_options throws; empty if it does not.
+std::string refusal(const RoughenOptions& options) {
+  try {
+    check_options(options);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+RoughenOptions read_job_text(const std::string& text) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "job", text);
+  return read_job(folder / "job");
+}
+
+}  // namespace
+
+TEST(Options, JsonAndBackIsTheIdentity) {
+  RoughenOptions options = good_options();
+  options.group = {"surface", "7"};
+  options.length = {10, std::numeric_limits<double>::infinity(), 0.1};
+  options.acf = Family::self_affine;
+  options.hurst = 0.1 + 0.2;
+  options.distance = DistanceKind::great_circle;
+  options.length_definition = LengthDefinition::sal;
+  options.volume = VolumeChoice::none;
+  options.seed = std::numeric_limits<std::uint64_t>::max();
+  options.flip = true;
+  const auto json = detail::options_to_json(options);
+  const RoughenOptions back = detail::options_from_json(nlohmann::json::parse(json.dump()), "test");
+  EXPECT_EQ(detail::options_to_json(back), json);
+  EXPECT_EQ(back.seed, options.seed);
+  EXPECT_EQ(back.length, options.length);
+  EXPECT_EQ(*back.hurst, *options.hurst);
+}
+
+TEST(Options, TomlAndJsonJobsMeanTheSame) {
+  const RoughenOptions toml = read_job_text(
+      "input = \"a.msh\"\nrms = 2\nlength = [10, inf, 5.5]\nacf = \"matern\"\nnu = 1.5\nseed = 3\n"
+      "group = [\"surface\", 4]\nflip = true\n");
+  const RoughenOptions json = read_job_text(
+      R"({"input": "a.msh", "rms": 2, "length": [10, "inf", 5.5], "acf": "matern", "nu": 1.5, "seed": 3,
+          "group": ["surface", "4"], "flip": true})");
+  EXPECT_EQ(detail::options_to_json(toml), detail::options_to_json(json));
+  EXPECT_EQ(toml.acf, Family::matern);
+  EXPECT_EQ(toml.group, (std::vector<std::string>{"surface", "4"}));
+}
+
+TEST(Options, AReportIsAJob) {
+  RoughenOptions options = good_options();
+  options.seed = 42;
+  const nlohmann::ordered_json report = {{"roughmesh", "0.1.0"},
+                                         {"request", detail::options_to_json(options)}};
+  EXPECT_EQ(detail::options_to_json(read_job_text(report.dump())),
+            detail::options_to_json(options));
+}
+
+TEST(Options, BadJobsAreRefusedInOneLine) {
+  for (const std::string text :
+       {"rms = 'two'", "unknown = 1", "length = true", "acf = 'gauss'", "seed = -1", "threads = -1",
+        "realizations = 1.5", "flip = 1", "rms = 1979-05-27", "{\"rms\": \"2\"}", "{\"x\": 1}",
+        "{\"request\": 3}", "group = [[1]]"}) {
+    try {
+      read_job_text(text);
+      FAIL() << text;
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << text;
+    }
+  }
+  for (const std::string text : {"rms = ", "{\"rms\": ", "\xff\xfe", "= 3", "{"})
+    EXPECT_THROW(read_job_text(text), FormatError) << text;
+  EXPECT_THROW(read_job("/nonexistent/job.toml"), InputError);
+  EXPECT_THROW(read_job("/"), InputError);
+}
+
+TEST(Options, NonsenseIsRefusedByTheNameOfTheOption) {
+  EXPECT_EQ(refusal(good_options()), "");
+  const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
+  const std::vector<std::pair<std::string, std::function<void(RoughenOptions&, double)>>> numbers =
+      {
+          {"--rms", [](auto& o, double x) { o.rms = x; }},
+          {"--length", [](auto& o, double x) { o.length = {x}; }},
+          {"--tolerance", [](auto& o, double x) { o.tolerance = x; }},
+          {"--edge-angle", [](auto& o, double x) { o.edge_angle = x; }},
+          {"--nu", [](auto& o, double x) { o.acf = Family::matern, o.nu = x; }},
+          {"--hurst", [](auto& o, double x) { o.acf = Family::self_affine, o.hurst = x; }},
+          {"--power", [](auto& o, double x) { o.acf = Family::stretched, o.power = x; }},
+          {"--alpha", [](auto& o, double x) { o.acf = Family::rational_quadratic, o.alpha = x; }},
+      };
+  for (const auto& [option, set] : numbers)
+    for (const double value : {0.0, -1.0, nan, inf, -inf}) {
+      RoughenOptions options = good_options();
+      set(options, value);
+      EXPECT_NE(refusal(options).find(option), std::string::npos)
+          << option << " " << value << ": " << refusal(options);
+    }
+}
+
+TEST(Options, CombinationsThatMakeNoSenseAreRefused) {
+  const auto refused = [](const std::function<void(RoughenOptions&)>& change) {
+    RoughenOptions options = good_options();
+    change(options);
+    return !refusal(options).empty();
+  };
+  EXPECT_TRUE(refused([](auto& o) { o.length = {}; }));
+  EXPECT_TRUE(refused([](auto& o) { o.length = {1, 2, 3, 4}; }));
+  EXPECT_TRUE(refused([](auto& o) { o.angle = 10; }));
+  EXPECT_TRUE(refused([](auto& o) { o.length = {1, 2}, o.distance = DistanceKind::great_circle; }));
+  EXPECT_TRUE(refused([](auto& o) { o.nu = 1; }));
+  EXPECT_TRUE(refused([](auto& o) { o.rolloff = 1; }));
+  EXPECT_TRUE(refused([](auto& o) { o.method = "lattice"; }));
+  EXPECT_TRUE(refused([](auto& o) { o.threads = -1; }));
+  EXPECT_TRUE(refused([](auto& o) { o.realizations = 0; }));
+  EXPECT_TRUE(refused([](auto& o) { o.realizations = 2, o.output = "rough.msh"; }));
+  EXPECT_TRUE(refused([](auto& o) { o.first = std::numeric_limits<std::uint64_t>::max(); }));
+  EXPECT_FALSE(refused([](auto& o) { o.realizations = 2, o.output = "r_{realization}.msh"; }));
+}
+
+TEST(Options, OutputNamesFollowTheTemplate) {
+  EXPECT_EQ(output_path("rough_{realization}.msh", 7), "rough_7.msh");
+  EXPECT_EQ(output_path("{realization:04}/r{realization}.vtu", 12), "0012/r12.vtu");
+  EXPECT_EQ(output_path("plain.msh", 3), "plain.msh");
+  EXPECT_EQ(output_path("{other}{realization:x}", 3), "{other}{realization:x}");
+  const auto report_of = [](const std::string& output) {
+    RoughenOptions options;
+    options.output = output;
+    return report_path(options);
+  };
+  EXPECT_EQ(report_of("rough_{realization}.msh"), "rough_.report.json");
+  EXPECT_EQ(report_of("out/rough.msh"), "out/rough.report.json");
+  EXPECT_EQ(report_of("a{realization:04}b.vtu"), "ab.report.json");
+}
