@@ -16,7 +16,7 @@ struct SurfaceOptions {
   /// Names or numbers of physical groups of dimension 2 (an exact name goes before a number), or
   /// "all": every element of dimension 2, the whole boundary where there are none. Empty: the only
   /// such group; the whole boundary of a volume mesh (or the whole surface mesh) that has none.
-  std::vector<std::string> groups;
+  std::vector<std::string> groups = {};
   bool flip = false;  ///< turn every normal round
   /// Edges whose two face normals enclose more than this count as sharp, in radians.
   double sharp_angle = 40.0 / 180.0 * std::numbers::pi;

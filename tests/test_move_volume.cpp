@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The interior follows the surface.
+#include <cmath>
+#include <random>
+#include <set>
+
+#include <Eigen/Cholesky>
+#include <gtest/gtest.h>
+
+#include "roughmesh/check.hpp"
+#include "roughmesh/displace.hpp"
+#include "roughmesh/move_volume.hpp"
+
+#include "harmonic.hpp"
+#include "parallel.hpp"
+#include "support/cells.hpp"
+#include "support/meshes.hpp"
+
+using namespace roughmesh;
+
+namespace {
+
+constexpr std::array volume_shapes = {ElementShape::tetrahedron, ElementShape::hexahedron,
+                                      ElementShape::prism, ElementShape::pyramid};
+
+Surface ball(const Mesh& mesh) { return select_surface(mesh, {.groups = {"surface"}}); }
+
+std::vector<double> bumps(const Surface& surface, double size) {
+  std::vector<double> heights;
+  for (const Vec3& x : surface.points)
+    heights.push_back(size * std::sin(7 * x.x() + 1) * std::cos(5 * x.y() - 6 * x.z()));
+  return heights;
+}
+
+std::vector<Vec3> constant(const Surface& surface, const Vec3& value) {
+  return std::vector<Vec3>(surface.points.size(), value);
+}
+
+bool on_box(const Vec3& x) { return x.lpNorm<Eigen::Infinity>() > 1 - 1e-12; }
+
+// sum over tetrahedra of 1/V * integral |grad u|^2 = sum |grad u|^2, from the definition: grad u
+// solves the three differences of u along edges.
+double energy(const Mesh& mesh, const std::vector<Vec3>& displacements) {
+  double sum = 0;
+  for (const ElementBlock& block : mesh.blocks) {
+    if (block.type.shape != ElementShape::tetrahedron) continue;
+    for (Index e = 0; e < block.size(); ++e) {
+      const auto t = block.element(e);
+      Eigen::Matrix3d edges, differences;
+      for (int k = 0; k < 3; ++k) {
+        edges.col(k) = mesh.nodes[t[k + 1]] - mesh.nodes[t[0]];
+        differences.col(k) = displacements[t[k + 1]] - displacements[t[0]];
+      }
+      sum += (differences * edges.inverse()).squaredNorm();
+    }
+  }
+  return sum;
+}
+
+std::vector<Vec3> difference(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  std::vector<Vec3> result(a);
+  for (std::size_t i = 0; i < a.size(); ++i) result[i] -= b[i];
+  return result;
+}
+
+// Every node with z < 1/2 is given, every other one unknown; nothing stays.
+detail::NodeRoles half_given(const Mesh& mesh) {
+  detail::NodeRoles roles;
+  for (const Vec3& x : mesh.nodes) {
+    roles.given.push_back(x.z() < 0.5 ? roles.n_given++ : -1);
+    roles.unknown.push_back(x.z() < 0.5 ? -1 : roles.n_unknown++);
+  }
+  return roles;
+}
+
+std::vector<detail::Tetrahedron> tetrahedra(const Mesh& mesh) {
+  std::vector<detail::Tetrahedron> result;
+  for (const ElementBlock& block : mesh.blocks)
+    for (Index e = 0; block.type.shape == ElementShape::tetrahedron && e < block.size(); ++e) {
+      const auto t = block.element(e);
+      result.push_back({t[0], t[1], t[2], t[3]});
+    }
+  return result;
+}
+
+}  // namespace
+
+TEST(MoveVolume, ZeroDisplacementChangesNoBit) {
+  for (const Mesh& mesh : {test::ball_in_box(8), test::icosphere(2)}) {
+    const Surface surface = ball(mesh);
+    EXPECT_EQ(VolumeMover(mesh, surface).move(constant(surface, Vec3::Zero())), mesh.nodes);
+  }
+}
+
+TEST(MoveVolume, SurfaceNodesMoveAsToldAndOuterNodesStay) {
+  const Mesh mesh = test::shuffled(test::ball_in_box(8), 4);
+  const Surface surface = ball(mesh);
+  const std::vector<Vec3> displacements = displace(surface, bumps(surface, 0.03));
+  const VolumeMover mover(mesh, surface);
+  EXPECT_EQ(mover.method(), VolumeMethod::harmonic);
+  EXPECT_EQ(mover.n_wall_nodes(), 0);
+  const std::vector<Vec3> moved = mover.move(displacements);
+  for (std::size_t i = 0; i < surface.nodes.size(); ++i)
+    EXPECT_EQ(moved[surface.nodes[i]],
+              mesh.nodes[surface.nodes[i]] + displacements[surface.point_of_node[i]]);
+  const std::set<Index> on_surface(surface.nodes.begin(), surface.nodes.end());
+  for (Index node = 0; node < mesh.n_nodes(); ++node) {
+    if (on_box(mesh.nodes[node])) {
+      EXPECT_EQ(moved[node], mesh.nodes[node]);
+    } else if (!on_surface.contains(node)) {
+      EXPECT_NE(moved[node], mesh.nodes[node]);
+    }
+  }
+}
+
+// All interior volumes depend on the interface alone, the sum on nothing. Each of 3,072 volumes is
+// rounded to 1e-16 of the cube of its coordinates.
+TEST(MoveVolume, VolumesAreThoseOfTheMovedSurface) {
+  const Mesh mesh = test::ball_in_box(8);
+  const Surface surface = ball(mesh);
+  const VolumeMover mover(mesh, surface);
+  const std::vector<Vec3> displacements = displace(surface, bumps(surface, 0.03));
+  const std::vector<Vec3> moved = mover.move(displacements);
+  EXPECT_NEAR(test::tetrahedron_volume(mesh, moved), 8, 1e-12);
+  EXPECT_NEAR(test::tetrahedron_volume(mesh, moved, 1),
+              enclosed_volume(surface, moved_points(surface, displacements)), 1e-12);
+
+  const std::vector<double> up(surface.points.size(), 0.02);
+  const std::vector<Vec3> grown = mover.move(displace(surface, up));
+  EXPECT_GT(test::tetrahedron_volume(mesh, grown, 1),
+            test::tetrahedron_volume(mesh, mesh.nodes, 1));
+  EXPECT_NEAR(test::tetrahedron_volume(mesh, grown), 8, 1e-12);
+}
+
+// The gradient of a constant is zero on every tetrahedron, so that constants are solutions. The
+// residual of 1e-12 is amplified by at most the condition number, below 1e2 here.
+TEST(MoveVolume, ConstantsAreReproduced) {
+  for (const ElementShape shape : volume_shapes) {
+    const Mesh mesh = test::without_faces(test::cell_box(shape, 4));
+    const Surface boundary = select_surface(mesh);
+    const Vec3 shift(0.3, -0.2, 0.1);
+    const VolumeMover mover(mesh, boundary);
+    EXPECT_EQ(mover.n_wall_nodes(), 0);
+    const std::vector<Vec3> moved = mover.move(constant(boundary, shift));
+    for (Index node = 0; node < mesh.n_nodes(); ++node)
+      EXPECT_NEAR((moved[node] - mesh.nodes[node] - shift).norm(), 0, 1e-10);
+  }
+}
+
+// With equal volumes the weights are equal and the equations those of linear elements for the
+// Laplace equation, which linear functions solve. (Where volumes differ they do not: the weight
+// jumps from one tetrahedron to the next.)
+TEST(MoveVolume, LinearFieldsAreReproducedWhereVolumesAreEqual) {
+  const Mesh mesh = test::without_faces(test::cell_box(ElementShape::tetrahedron, 4));
+  const Surface boundary = select_surface(mesh);
+  Eigen::Matrix3d gradient;
+  gradient << 0.1, 0.2, -0.1, 0.05, -0.15, 0.1, 0.0, 0.2, 0.1;
+  std::vector<Vec3> displacements;
+  for (const Vec3& x : boundary.points) displacements.push_back(gradient * x);
+  const std::vector<Vec3> moved = VolumeMover(mesh, boundary).move(displacements);
+  for (Index node = 0; node < mesh.n_nodes(); ++node)
+    EXPECT_NEAR((moved[node] - mesh.nodes[node] - gradient * mesh.nodes[node]).norm(), 0, 1e-10);
+}
+
+// E is quadratic, so at its minimum u and for v that vanishes where u is given, Pythagoras holds:
+// E(u + v) = E(u) + E(v). A wrong weight, sign or node breaks it at first order.
+TEST(MoveVolume, TheDisplacementMinimizesTheWeightedEnergy) {
+  const Mesh mesh = test::ball_in_box(8);
+  const Surface surface = ball(mesh);
+  const std::vector<Vec3> moved =
+      VolumeMover(mesh, surface).move(displace(surface, bumps(surface, 0.05)));
+  const std::vector<Vec3> u = difference(moved, mesh.nodes);
+  const std::set<Index> on_surface(surface.nodes.begin(), surface.nodes.end());
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-0.01, 0.01);
+  std::vector<Vec3> v(u.size(), Vec3::Zero()), sum(u);
+  for (Index node = 0; node < mesh.n_nodes(); ++node) {
+    if (on_box(mesh.nodes[node]) || on_surface.contains(node)) continue;
+    v[node] = Vec3(uniform(random), uniform(random), uniform(random));
+    sum[node] += v[node];
+  }
+  const double eu = energy(mesh, u), ev = energy(mesh, v);
+  EXPECT_NEAR(energy(mesh, sum), eu + ev, 1e-9 * (eu + ev));
+}
+
+TEST(MoveVolume, TheStiffnessIsSymmetricAndPositiveDefinite) {
+  const Mesh mesh = test::cell_box(ElementShape::tetrahedron, 4);
+  const detail::HarmonicExtension extension(mesh.nodes, tetrahedra(mesh), half_given(mesh));
+  const Eigen::MatrixXd stiffness = extension.stiffness();
+  EXPECT_EQ(stiffness, stiffness.transpose());
+  EXPECT_EQ(stiffness.llt().info(), Eigen::Success);
+}
+
+// The top sinks by more than the size of a cell, which the cells below it share.
+TEST(MoveVolume, EveryShapeMovesWithItsTop) {
+  for (const ElementShape shape : volume_shapes) {
+    const Mesh mesh = test::cell_box(shape, 6);
+    const Surface top = select_surface(mesh, {.groups = {"top"}});
+    std::vector<Vec3> displacements;
+    for (const Vec3& x : top.points)
+      displacements.emplace_back(0, 0, -3.2 * x.x() * (1 - x.x()) * x.y() * (1 - x.y()));
+    const std::vector<Vec3> moved = VolumeMover(mesh, top).move(displacements);
+    EXPECT_TRUE(check_mesh(mesh, moved).valid()) << name(mesh.blocks[2].type);
+    std::vector<Vec3> top_only = mesh.nodes;
+    for (Index node = 0; node < mesh.n_nodes(); ++node) {
+      const Vec3& x = mesh.nodes[node];
+      if (x.z() == 1) top_only[node] = moved[node];
+      // Nodes of the walls, of the unselected faces between the volumes and below them stay.
+      const bool is_free = x.x() > 0 && x.x() < 1 && x.y() > 0 && x.y() < 1 && x.z() > 0.5;
+      EXPECT_EQ(moved[node].z() < x.z(), is_free);
+    }
+    EXPECT_FALSE(check_mesh(mesh, top_only).valid());
+  }
+}
+
+// The rim of the top lies on the four walls, whether these are elements or only the boundary.
+TEST(MoveVolume, WallNodesAreCounted) {
+  Mesh mesh = test::cell_box(ElementShape::hexahedron, 4);
+  const Surface top = select_surface(mesh, {.groups = {"top"}});
+  EXPECT_EQ(VolumeMover(mesh, top).n_wall_nodes(), 16);
+  const Surface middle = select_surface(mesh, {.groups = {"middle"}});
+  EXPECT_EQ(VolumeMover(mesh, middle).n_wall_nodes(), 16);
+  const Mesh plate = test::plate(4);
+  EXPECT_EQ(VolumeMover(plate, select_surface(plate)).n_wall_nodes(), 0);
+}
+
+// Volumes on either side of a crack have nodes of their own at equal positions.
+TEST(MoveVolume, BothSidesOfACrackMoveTogether) {
+  Mesh mesh = test::ball_in_box(8);
+  const Surface whole = ball(mesh);
+  const std::set<Index> on_surface(whole.nodes.begin(), whole.nodes.end());
+  for (Index& node : mesh.blocks[3].nodes) {
+    if (!on_surface.contains(node)) continue;
+    mesh.nodes.push_back(mesh.nodes[node]);
+    node = mesh.n_nodes() - 1;
+  }
+  test::number_nodes(mesh);
+  const Surface surface = ball(mesh);
+  const std::vector<Vec3> moved =
+      VolumeMover(mesh, surface).move(displace(surface, bumps(surface, 0.03)));
+  EXPECT_TRUE(check_mesh(mesh, moved).valid());
+  EXPECT_NEAR(test::tetrahedron_volume(mesh, moved), 8, 1e-11);
+}
+
+TEST(MoveVolume, ASurfaceMeshMovesItsSurfaceOnly) {
+  Mesh mesh = test::plate(4);
+  const std::vector<Index> all = mesh.blocks[0].nodes;
+  const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+  mesh.blocks = {test::make_block(test::triangle_type, 1, {1}, {all.begin(), middle}, 1),
+                 test::make_block(test::triangle_type, 2, {2}, {middle, all.end()}, 101)};
+  mesh.groups.push_back({2, 2, "rest"});
+  const Surface surface = ball(mesh);
+  const VolumeMover mover(mesh, surface);
+  EXPECT_EQ(mover.method(), VolumeMethod::none);
+  EXPECT_EQ(name(mover.method()), "none");
+  EXPECT_EQ(mover.n_wall_nodes(), 5);
+  const std::vector<Vec3> moved = mover.move(constant(surface, Vec3::UnitZ()));
+  for (Index node = 0; node < mesh.n_nodes(); ++node)
+    EXPECT_EQ(moved[node].z(), mesh.nodes[node].y() <= 0.5 ? 1 : 0);
+}
+
+// Flat elements have no weight 1 / V; a node in nothing else has no equation and stays.
+TEST(MoveVolume, FlatElementsDoNoHarm) {
+  Mesh mesh = test::ball_in_box(8);
+  const Index a = mesh.n_nodes();
+  mesh.nodes.emplace_back(0.7, 0.7, 0.7);
+  test::number_nodes(mesh);
+  auto& block = mesh.blocks[3];
+  const Index inner = block.nodes[0];
+  block.nodes.insert(block.nodes.end(), {inner, inner, block.nodes[1], a});
+  block.tags.push_back(99999);
+  const Surface surface = ball(mesh);
+  const std::vector<Vec3> moved =
+      VolumeMover(mesh, surface).move(displace(surface, bumps(surface, 0.03)));
+  for (const Vec3& x : moved) EXPECT_TRUE(x.allFinite());
+  EXPECT_EQ(moved[a], mesh.nodes[a]);
+  EXPECT_TRUE(check_mesh(mesh, moved).valid());
+}
+
+TEST(MoveVolume, DoesNotDependOnTheNumberOfThreads) {
+  const Mesh mesh = test::ball_in_box(16);  // several ranges of rows
+  const Surface surface = ball(mesh);
+  const std::vector<Vec3> displacements = displace(surface, bumps(surface, 0.02));
+  const auto run = [&](int n_threads) {
+    const detail::ThreadLimit limit(n_threads);
+    return VolumeMover(mesh, surface).move(displacements);
+  };
+  EXPECT_EQ(run(1), run(2));
+}
+
+// Powers of two change exponents only: not even the number of iterations.
+TEST(MoveVolume, ScalingBy1024IsExact) {
+  const Mesh mesh = test::ball_in_box(8);
+  const Mesh large = test::transformed(mesh, Eigen::Affine3d(Eigen::Scaling(1024.0)));
+  const auto run = [](const Mesh& m, double size) {
+    const Surface surface = ball(m);
+    return VolumeMover(m, surface)
+        .move(displace(surface, std::vector<double>(surface.points.size(), size)));
+  };
+  const std::vector<Vec3> a = run(mesh, 0.05), b = run(large, 0.05 * 1024);
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(b[i], 1024 * a[i]);
+}
+
+TEST(MoveVolume, ElementsOfHigherOrderAreRefusedWhereTheyWouldMove) {
+  Mesh mesh = test::cell_box(ElementShape::tetrahedron, 4);
+  const auto curved = [&](Index corner) {
+    std::vector<Index> nodes = {corner};
+    for (int i = 1; i < 10; ++i) {
+      nodes.push_back(mesh.n_nodes());
+      mesh.nodes.emplace_back(2 + i, i * i, i % 3);
+    }
+    return test::make_block({ElementShape::tetrahedron, 2, 10}, 3, {}, nodes, 777);
+  };
+  mesh.blocks.push_back(curved(0));
+  test::number_nodes(mesh);
+  const Surface top = select_surface(mesh, {.groups = {"top"}});
+  try {
+    const VolumeMover mover(mesh, top);
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("element 777"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("-order 1"), std::string::npos);
+  }
+}
+
+TEST(MoveVolume, NonsenseIsRefused) {
+  const Mesh mesh = test::ball_in_box(4);
+  const Surface surface = ball(mesh);
+  const VolumeMover mover(mesh, surface);
+  EXPECT_THROW(mover.move({}), InputError);
+  std::vector<Vec3> displacements = constant(surface, Vec3::Zero());
+  displacements[3].x() = std::nan("");
+  EXPECT_THROW(mover.move(displacements), InputError);
+  // The square of the load overflows, and no residual is small beside infinity.
+  EXPECT_THROW(mover.move(constant(surface, Vec3::Constant(1e200))), NumericalError);
+}
