@@ -14,8 +14,8 @@
 
 #include "roughmesh/mesh_io.hpp"
 
-#include "support/files.hpp"
-#include "support/msh_files.hpp"
+#include "../tests/support/files.hpp"
+#include "../tests/support/msh_files.hpp"
 
 using namespace roughmesh;
 
@@ -86,10 +86,17 @@ Result in_child(Action action) {
   return result;
 }
 
-double peak_gigabytes() {
-  rusage usage{};
-  ::getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) * 1024e-9;
+rusage usage() {
+  rusage result{};
+  ::getrusage(RUSAGE_SELF, &result);
+  return result;
+}
+
+double processor_seconds(const rusage& used) {
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  return seconds(used.ru_utime) + seconds(used.ru_stime);
 }
 
 double plain_read_seconds(const std::filesystem::path& path) {
@@ -105,14 +112,17 @@ double plain_read_seconds(const std::filesystem::path& path) {
 }
 
 struct Reading {
-  double seconds, gigabytes;
+  double seconds, processor_seconds, gigabytes;
   std::int64_t n_nodes, n_elements;
 };
 
 Reading read_once(const std::filesystem::path& path) {
   const auto start = Clock::now();
   const Mesh mesh = read_mesh(path);
-  return {seconds_since(start), peak_gigabytes(), mesh.n_nodes(), n_elements(mesh)};
+  const double seconds = seconds_since(start);
+  const rusage used = usage();  // the process has done nothing else
+  return {seconds, processor_seconds(used), static_cast<double>(used.ru_maxrss) * 1024e-9,
+          mesh.n_nodes(), n_elements(mesh)};
 }
 
 double patch_seconds(const std::filesystem::path& path) {
@@ -134,12 +144,11 @@ void report(const test::TemporaryFolder& folder, int divisions, const test::MshS
   const Reading reading = in_child<Reading>([&] { return read_once(path); });
   const double patch = in_child<double>([&] { return patch_seconds(path); });
   std::printf(
-      "%-24s %4.0f MB  %8lld nodes %8lld elements  read %5.2f s (%4.0f MB/s, %4.1f x read())"
-      "  peak %.2f GB  write %5.2f s (%4.0f MB/s)  read() %5.2f s (%5.0f MB/s)\n",
+      "%-23s %5.0f %9lld %9lld | %6.2f %6.2f %6.0f %6.2f | %6.2f %6.0f %7.1f | %6.2f %6.0f\n",
       name(style).c_str(), megabytes, static_cast<long long>(reading.n_nodes),
-      static_cast<long long>(reading.n_elements), reading.seconds, megabytes / reading.seconds,
-      reading.seconds / plain, reading.gigabytes, patch, megabytes / patch, plain,
-      megabytes / plain);
+      static_cast<long long>(reading.n_elements), reading.seconds, reading.processor_seconds,
+      megabytes / reading.seconds, reading.gigabytes, plain, megabytes / plain,
+      reading.seconds / plain, patch, megabytes / patch);
   std::fflush(stdout);
 }
 
@@ -148,5 +157,9 @@ void report(const test::TemporaryFolder& folder, int divisions, const test::MshS
 int main(int argc, char** argv) {
   const int divisions = argc > 1 ? std::atoi(argv[1]) : 99;
   const test::TemporaryFolder folder;
+  std::printf("%-23s %5s %9s %9s | %6s %6s %6s %6s | %6s %6s %7s | %6s %6s\n", "", "", "", "",
+              "read", "cpu", "", "peak", "read()", "", "ratio", "write", "");
+  std::printf("%-23s %5s %9s %9s | %6s %6s %6s %6s | %6s %6s %7s | %6s %6s\n", "variant", "MB",
+              "nodes", "elements", "s", "s", "MB/s", "GB", "s", "MB/s", "", "s", "MB/s");
   for (const test::MshStyle& style : test::all_msh_styles()) report(folder, divisions, style);
 }
