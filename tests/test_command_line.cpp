@@ -36,7 +36,7 @@ class CommandLine : public testing::Test {
   TemporaryFolder folder;
 };
 
-const std::string sphere_job = "roughen sphere.msh --rms 0.02 --length 0.5 ";
+const std::string sphere_job = "roughen sphere.msh --rms 0.02 --length 0.8 ";
 
 void expect_failure(const Outcome& outcome, int exit_code, const std::string& what) {
   EXPECT_EQ(outcome.exit_code, exit_code) << what << ": " << outcome.err;

@@ -23,13 +23,13 @@ RoughenOptions sphere_options() {
   return options;
 }
 
-struct Run {
+struct Result {
   std::vector<RoughMesh> meshes;
   Report report;
 };
 
-Run run(const Mesh& mesh, const RoughenOptions& options) {
-  Run result;
+Result run(const Mesh& mesh, const RoughenOptions& options) {
+  Result result;
   result.report = roughen(mesh, options,
                           [&](const RoughMesh& rough, Report&) { result.meshes.push_back(rough); });
   return result;
@@ -60,10 +60,10 @@ TEST(Pipeline, RealizationsAreTheSameAloneAndAmongOthers) {
   const Mesh sphere = test::icosphere(2);
   RoughenOptions options = sphere_options();
   options.realizations = 4;
-  const Run all = run(sphere, options);
+  const Result all = run(sphere, options);
   options.realizations = 1;
   options.first = 3;
-  const Run alone = run(sphere, options);
+  const Result alone = run(sphere, options);
   EXPECT_EQ(all.meshes[3].heights, alone.meshes[0].heights);
   EXPECT_EQ(alone.meshes[0].realization, 3U);
   EXPECT_GT(largest_difference(all.meshes[0].heights, all.meshes[1].heights), options.rms);
@@ -72,7 +72,7 @@ TEST(Pipeline, RealizationsAreTheSameAloneAndAmongOthers) {
 TEST(Pipeline, SeedsGiveOtherSurfaces) {
   const Mesh sphere = test::icosphere(2);
   RoughenOptions options = sphere_options();
-  const Run zero = run(sphere, options);
+  const Result zero = run(sphere, options);
   options.seed = 1;
   EXPECT_GT(largest_difference(zero.meshes[0].heights, run(sphere, options).meshes[0].heights),
             options.rms);
@@ -85,13 +85,13 @@ TEST(Pipeline, HeightsDoNotDependOnThreadsOrNumbering) {
     RoughenOptions options = sphere_options();
     options.length = {length};
     options.threads = 1;
-    const Run one = run(sphere, options);
+    const Result one = run(sphere, options);
     options.threads = 2;
-    const Run two = run(sphere, options);
+    const Result two = run(sphere, options);
     EXPECT_LE(largest_difference(one.meshes[0].heights, two.meshes[0].heights), 1e-8 * options.rms);
 
     std::vector<Index> place;
-    const Run shuffled = run(renumbered(sphere, place), options);
+    const Result shuffled = run(renumbered(sphere, place), options);
     for (std::size_t i = 0; i < place.size(); ++i)
       ASSERT_NEAR(shuffled.meshes[0].heights[place[i]], two.meshes[0].heights[i],
                   1e-8 * options.rms);
@@ -103,10 +103,10 @@ TEST(Pipeline, HeightsScaleWithTheUnit) {
   Mesh scaled = sphere;
   for (Vec3& x : scaled.nodes) x *= 1024;
   RoughenOptions options = sphere_options();
-  const Run small = run(sphere, options);
+  const Result small = run(sphere, options);
   options.rms *= 1024;
   options.length[0] *= 1024;
-  const Run large = run(scaled, options);
+  const Result large = run(scaled, options);
   for (std::size_t i = 0; i < sphere.nodes.size(); ++i)
     ASSERT_NEAR(large.meshes[0].heights[i], 1024 * small.meshes[0].heights[i], 1e-8 * options.rms);
 }
@@ -120,8 +120,8 @@ TEST(Pipeline, RigidMotionChangesNoStatistic) {
   const Eigen::Matrix3d turn =
       (Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized())).toRotationMatrix();
   for (Vec3& x : moved.nodes) x = turn * x + Vec3(10, -20, 30);
-  const Run at_rest = run(sphere, sphere_options());
-  const Run in_motion = run(moved, sphere_options());
+  const Result at_rest = run(sphere, sphere_options());
+  const Result in_motion = run(moved, sphere_options());
   EXPECT_NEAR(in_motion.report.surface_area, at_rest.report.surface_area, 1e-11);
   const RealizationReport& a = at_rest.report.realizations[0];
   const RealizationReport& b = in_motion.report.realizations[0];
@@ -135,7 +135,7 @@ TEST(Pipeline, RigidMotionChangesNoStatistic) {
 
 TEST(Pipeline, NodesMoveByTheirHeightAlongTheNormal) {
   const Mesh sphere = test::icosphere(2);
-  const Run result = run(sphere, sphere_options());
+  const Result result = run(sphere, sphere_options());
   const RoughMesh& rough = result.meshes[0];
   for (std::size_t i = 0; i < sphere.nodes.size(); ++i) {
     const Vec3 radial = sphere.nodes[i].normalized();
@@ -148,7 +148,7 @@ TEST(Pipeline, TheInteriorFollowsAndTheBoxStays) {
   const Mesh mesh = test::ball_in_box(12);
   RoughenOptions options = sphere_options();
   options.group = {"surface"};
-  const Run result = run(mesh, options);
+  const Result result = run(mesh, options);
   const Mesh& rough = result.meshes[0].mesh;
   for (const Index node : mesh.blocks[1].nodes) EXPECT_EQ(rough.nodes[node], mesh.nodes[node]);
   EXPECT_EQ(result.report.realizations[0].inverted_elements, 0);
@@ -176,7 +176,7 @@ TEST(Pipeline, ReportStatesWhatWasMeasured) {
   const Mesh sphere = test::icosphere(3);
   RoughenOptions options = sphere_options();
   options.realizations = 2;
-  const Run result = run(sphere, options);
+  const Result result = run(sphere, options);
   const auto json = nlohmann::json::parse(to_json(result.report));
   EXPECT_EQ(json["roughmesh"], version());
   EXPECT_EQ(json["request"]["rms"], options.rms);
