@@ -2,7 +2,8 @@
 // MSH: the loop over sections, and the sections that all versions share.
 #include "io_msh.hpp"
 
-#include <algorithm>
+#include <cstdlib>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -40,6 +41,12 @@ void MshReader::finish_nodes() {
     scanner.fail_at(offsets[i], fmt::format("two nodes have the number {}; renumber the mesh",
                                             mesh.node_tags[i]));
   }
+}
+
+Tag MshReader::group(Tag tag) const {
+  if (tag == std::numeric_limits<Tag>::min())
+    scanner.fail(fmt::format("physical group {} is beyond 2^63 - 1; renumber the groups", tag));
+  return std::abs(tag);
 }
 
 void MshReader::start_elements() {
@@ -98,16 +105,15 @@ void expect_end(Scanner& scanner) {
 }
 
 MeshFormat format_of_version(Scanner& scanner, std::string_view version) {
-  if (version == "2" || version == "2.0" || version == "2.1" || version == "2.2")
-    return MeshFormat::msh2;
-  if (version == "4.1") return MeshFormat::msh4;
   double number = 0;
   const auto [stop, error] =
       std::from_chars(version.data(), version.data() + version.size(), number);
   if (error != std::errc() || stop != version.data() + version.size())
     scanner.fail(fmt::format("{} is no version number: the file is damaged", quoted(version)));
-  scanner.refuse(
-      fmt::format("MSH version {} is not read, only 2.2 and 4.1; {}", version, conversion));
+  if (number == 2.0 || number == 2.1 || number == 2.2) return MeshFormat::msh2;
+  if (number == 4.1) return MeshFormat::msh4;
+  scanner.refuse(fmt::format("MSH version {} is not read, only 2.2 and 4.1; {}", printable(version),
+                             conversion));
 }
 
 void read_byte_order(Scanner& scanner) {
@@ -148,7 +154,8 @@ void read_physical_names(MshReader& reader) {
     const std::size_t open = rest.find('"');
     const std::size_t close = rest.rfind('"');
     if (open == rest.npos || close == open) scanner.fail("a group's name lacks its quotes");
-    reader.names[{static_cast<int>(dim), std::abs(tag)}] = rest.substr(open + 1, close - open - 1);
+    reader.names[{static_cast<int>(dim), reader.group(tag)}] =
+        rest.substr(open + 1, close - open - 1);
   }
 }
 
@@ -156,13 +163,13 @@ void read_physical_names(MshReader& reader) {
 void skip_section(Scanner& scanner) {
   const std::string end = "$End" + scanner.section().substr(1);
   const std::size_t start = scanner.offset();
-  std::string_view rest = scanner.rest();
+  const std::string_view rest = scanner.rest();
   for (std::size_t found = rest.find(end); found != rest.npos; found = rest.find(end, found + 1)) {
     const std::size_t stop = found + end.size();
     if (stop < rest.size() && !is_space(rest[stop])) continue;
     return scanner.move_to(start + stop);
   }
-  scanner.fail(fmt::format("{} is missing: the file is cut short", end));
+  scanner.fail(fmt::format("{} is missing: the file is cut short", printable(end)));
 }
 
 using SectionReader = void (*)(MshReader&);
@@ -201,9 +208,9 @@ void read_section(MshReader& reader) {
   scanner.set_section(section);
   scanner.line();
   const SectionReader read = reader_of_section(reader.mesh.format, section);
-  if (read == nullptr) return skip_section(scanner);
-  if (reader.mesh.format == MeshFormat::none && read != read_format)
+  if (reader.mesh.format == MeshFormat::none && read != read_format && section != "$Comments")
     scanner.fail_at(start, "stands before $MeshFormat; put it behind");
+  if (read == nullptr) return skip_section(scanner);
   read(reader);
   expect_end(scanner);
 }

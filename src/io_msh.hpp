@@ -44,6 +44,9 @@ struct MshReader {
   void add_position();                                  ///< of the next node
   void finish_nodes();                                  ///< numbers are unique from here on
 
+  /// The number of a physical group, whose sign is that of an orientation.
+  Tag group(Tag tag) const;
+
   void start_elements();
   const ElementType& element_type(Tag number) const;
   void check_element_count(Tag n) const;

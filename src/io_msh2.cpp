@@ -63,7 +63,7 @@ class BlockFinder {
 ElementBlock& find_block(MshReader& reader, BlockFinder& finder, const ElementType& type,
                          Tag n_tags) {
   Scanner& scanner = reader.scanner;
-  const Tag group = n_tags > 0 ? std::abs(scanner.integer()) : 0;
+  const Tag group = n_tags > 0 ? reader.group(scanner.integer()) : 0;
   const Tag entity = n_tags > 1 ? scanner.integer() : 0;
   for (Tag i = 2; i < n_tags; ++i) scanner.integer();
   return finder.find(type, entity, group);

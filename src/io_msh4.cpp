@@ -37,7 +37,7 @@ std::vector<Tag> read_groups(MshReader& reader) {
   const std::size_t n = scanner.count(scanner.size(), reader.least(int_bytes), "physical groups");
   std::vector<Tag> groups;
   for (std::size_t i = 0; i < n; ++i)
-    if (const Tag group = std::abs(scanner.integer()); group != 0) groups.push_back(group);
+    if (const Tag group = reader.group(scanner.integer()); group != 0) groups.push_back(group);
   std::sort(groups.begin(), groups.end());
   groups.erase(std::unique(groups.begin(), groups.end()), groups.end());
   return groups;

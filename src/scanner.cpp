@@ -73,7 +73,7 @@ void Scanner::fail(std::string_view what) const { fail_at(offset(), what); }
 
 void Scanner::fail_at(std::size_t offset, std::string_view what) const {
   const std::string file = file_->path.string();
-  const std::string section = section_.empty() ? "" : section_ + ": ";
+  const std::string section = section_.empty() ? "" : printable(section_) + ": ";
   if (encoding_ == Encoding::binary)
     throw FormatError(fmt::format("{}: byte {}: {}{}", file, offset, section, what));
   // Lines are counted only here, so that reading a good file need not count them.
@@ -105,12 +105,14 @@ double Scanner::checked_real(std::from_chars_result result, double value) {
   return 0;  // too small for a double
 }
 
-std::string quoted(std::string_view text) {
+std::string printable(std::string_view text) {
   constexpr std::size_t longest = 24;
   std::string safe(text.substr(0, longest));
   for (char& c : safe)
     if (static_cast<unsigned char>(c) < 32 || static_cast<unsigned char>(c) > 126) c = '?';
-  return '"' + safe + (text.size() > longest ? "...\"" : "\"");
+  return text.size() > longest ? safe + "..." : safe;
 }
+
+std::string quoted(std::string_view text) { return '"' + printable(text) + '"'; }
 
 }  // namespace roughmesh::detail

@@ -102,7 +102,8 @@ class Scanner {
 };
 
 /// For messages: at most 24 characters, nothing that could break a line or a terminal.
-std::string quoted(std::string_view text);
+std::string printable(std::string_view text);
+std::string quoted(std::string_view text);  ///< likewise, in quotes
 
 // In the header: a mesh of a million nodes has fifty million integers.
 inline Tag Scanner::text_integer() {

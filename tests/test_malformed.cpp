@@ -115,6 +115,10 @@ void add_text2(std::vector<Case>& cases) {
   add("names_huge", "$PhysicalNames\n1", "$PhysicalNames\n1000000", "do not fit");
   add("names_without_quotes", "\"side\"", "side", "lacks its quotes");
   add("names_dimension", "2 5 \"side\"", "7 5 \"side\"", "dimension 7");
+  add("names_tag_beyond", "2 5 \"side\"", "2 -9223372036854775808 \"side\"", "beyond 2^63 - 1");
+  add("element_group_beyond", "1 2 2 5 1", "1 2 2 -9223372036854775808 1", "beyond 2^63 - 1");
+  add("section_name_long", "$EndPeriodic\n",
+      "$EndPeriodic\n$\x1b[31m" + std::string(9999, 'x') + "\n", "$?[31mxxx");
   add("text_between_sections", "$Nodes\n3", "stray\n$Nodes\n3", "\"stray\" stands outside");
   add("text_at_the_end", "$EndPeriodic\n", "$EndPeriodic\nstray", "\"stray\" stands outside");
   add("nul_at_the_end", "$EndPeriodic\n", std::string("$EndPeriodic\n\0\0\0", 16),
@@ -167,6 +171,10 @@ void add_text4(std::vector<Case>& cases) {
       Kind::input_error);
   add("entities_huge", "0 0 1 0\n", "0 0 1000000000 0\n", "entities do not fit");
   add("entities_groups_huge", "1 1 1 1 5 0\n", "1 1 1 9999999 5 0\n", "groups do not fit");
+  add("entities_group_beyond", "1 1 1 1 5 0\n", "1 1 1 1 -9223372036854775808 0\n",
+      "beyond 2^63 - 1");
+  add("entities_before_format", "$MeshFormat\n4.1", "$Entities\n$EndEntities\n$MeshFormat\n4.1",
+      "stands before $MeshFormat");
   add("entities_cut", "1 0 0 0 1 1 1 1 5 0\n", "1 0 0\n", "$Entities: ");
   add("periodic_affine", "1 1 2\n0\n", "1 1 2\n9\n1 0 0 0 1 0 0 0 1\n",
       "9 numbers of an affine map");
