@@ -152,6 +152,31 @@ TEST(Statistics, LawOfSqOnASphereByGreatCircleDistance) {
                    Distance::great_circle(mesh.nodes), 0.02);
 }
 
+// m and v as traces of the centred covariance M = (1 - 1 w^T) R (1 - w 1^T) with the weights w: m =
+// tr(W M), v = 2 tr(W M W M). On a graded plate with long correlation, where rows differ most.
+TEST(Statistics, MomentsAreTracesOfTheCentredCovariance) {
+  const Surface surface = graded_plate(12);
+  const Autocorrelation acf({.length = 0.4});
+  const Index n = surface.n_points();
+  Eigen::MatrixXd matrix(n, n);
+  Eigen::VectorXd weights(n);
+  for (Index i = 0; i < n; ++i) {
+    weights[i] = surface.areas[i] / surface.area;
+    for (Index j = 0; j < n; ++j)
+      matrix(i, j) = acf.rho((surface.points[i] - surface.points[j]).norm());
+  }
+  const Eigen::MatrixXd centring =
+      Eigen::MatrixXd::Identity(n, n) - Eigen::VectorXd::Ones(n) * weights.transpose();
+  const Eigen::MatrixXd weighted =
+      weights.asDiagonal() * (centring * matrix * centring.transpose()).eval();
+  const double m = weighted.trace();
+  const double half = m * m / (2 * (weighted * weighted).trace());
+  const double mean = std::sqrt(m / half) * std::tgamma(half + 0.5) / std::tgamma(half);
+  const ExpectedSq expected = expected_sq(surface, acf, Distance::euclidean());
+  EXPECT_NEAR(expected.mean, mean, 1e-12);
+  EXPECT_NEAR(expected.standard_deviation, std::sqrt(m - mean * mean), 1e-11);
+}
+
 // Two to three effective degrees of freedom: here the chi-square form is what an expansion in 1/m
 // is not. Granted 5 % of the spread.
 TEST(Statistics, LawOfSqUnderStrongCorrelation) {
