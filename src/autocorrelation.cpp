@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "gamma_function.hpp"
 #include "matern.hpp"
 #include "spectrum_share.hpp"
 
@@ -121,14 +122,6 @@ void check_length(const AutocorrelationOptions& options) {
 constexpr double one_over_e_depth = 1;
 const double sal_depth = std::log(5.0);  // rho = 0.2
 
-// Gamma(x + 1/2) / Gamma(x), https://dlmf.nist.gov/5.11.E13 where the gamma function overflows.
-double gamma_ratio(double x) {
-  if (x < 150) return std::tgamma(x + 0.5) / std::tgamma(x);
-  const double y = 1 / x;
-  return std::sqrt(x) *
-         (1 - y / 8 * (1 - y / 16 * (1 + y * 5 / 8 * (1 - y * 21 / 160 * (1 + y * 19 / 8)))));
-}
-
 // The x at which the Matern function is exp(-depth), by bisection on its binary logarithm, which
 // reaches every double.
 double matern_decay_distance(double nu, double depth) {
@@ -168,12 +161,12 @@ double integral_scale(Family family, double shape) {
       return 1;
     case Family::matern:
     case Family::self_affine:
-      return std::sqrt(half_pi / shape) * gamma_ratio(shape);
+      return std::sqrt(half_pi / shape) * detail::gamma_ratio(shape);
     case Family::stretched:
       return std::tgamma(1 + 1 / shape);
     case Family::rational_quadratic:
       if (shape <= 0.5) return std::numeric_limits<double>::infinity();
-      return std::sqrt(half_pi * shape) / gamma_ratio(shape - 0.5);
+      return std::sqrt(half_pi * shape) / detail::gamma_ratio(shape - 0.5);
   }
   return 0;
 }

@@ -132,11 +132,11 @@ Distance Distance::stretched(const Anisotropy& anisotropy) {
     throw InputError("all three lengths along the axes are infinite; give a finite one");
   const Eigen::Matrix3d defect =
       anisotropy.axes.transpose() * anisotropy.axes - Eigen::Matrix3d::Identity();
-  if (!(defect.cwiseAbs().maxCoeff() <= 1e-12))
+  if (!(defect.norm() <= 1e-12))
     throw InputError(
         fmt::format("the axes of the lengths are not orthonormal: off by {:.3g}; give "
                     "orthogonal unit vectors",
-                    defect.cwiseAbs().maxCoeff()));
+                    defect.norm()));
   Distance result;
   if (lengths[1] == lengths[0] && lengths[2] == lengths[0]) return result;  // whatever the axes
   const Vec3 scales(relative_length(*reference, lengths[0]),

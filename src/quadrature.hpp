@@ -6,11 +6,9 @@
 #include <cmath>
 #include <numbers>
 
-namespace roughmesh::detail {
+#include "gamma_function.hpp"
 
-/// log of the integral of exp(-shape (e^s - 1 - s)) over all s, that is of
-/// Gamma(shape) (e / shape)^shape: what normalizes the law of log(G / shape), G ~ Gamma(shape).
-double log_gamma_normalization(double shape);
+namespace roughmesh::detail {
 
 /// E[f(s)] with G = shape e^s distributed as Gamma(shape, 1), for f analytic near the real axis
 /// and negligible below `lowest`. The trapezoidal rule converges exponentially here: L. N.
@@ -18,14 +16,14 @@ double log_gamma_normalization(double shape);
 template <class Function>
 double gamma_expectation(double shape, double lowest, const Function& f) {
   constexpr double negligible = 45;  // exp(-45) = 3e-20
-  const double step = std::min(0.2, 0.7 / std::sqrt(shape));
+  const double step = std::min(0.15, 0.6 / std::sqrt(shape));
   const auto exponent = [&](double s) { return shape * (std::expm1(s) - s); };
   double sum = 0;
   for (double k = 0; exponent(k * step) < negligible; ++k)
     sum += f(k * step) * std::exp(-exponent(k * step));
   for (double k = -1; k * step > lowest && exponent(k * step) < negligible; --k)
     sum += f(k * step) * std::exp(-exponent(k * step));
-  return sum * step * std::exp(-log_gamma_normalization(shape));
+  return sum * step * std::exp(-log_scaled_gamma(shape));
 }
 
 /// Integral of f over (0, width) by the double exponential rule; f(from_left, from_right) is given

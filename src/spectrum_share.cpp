@@ -26,9 +26,9 @@ double matern_share(double nu, double x, int dimension) {
   if (dimension == 2) return std::exp(-nu * std::log1p(x * x / (2 * nu)));
   if (x == 0) return 1;
   const double lowest = -80 - 2 * std::max(0.0, std::log(x));
-  return 1 - gamma_expectation(nu, lowest, [x](double s) {
-           return std::erf(x * std::exp(s / 2) / std::numbers::sqrt2);
-         });
+  const double below = gamma_expectation(
+      nu, lowest, [x](double s) { return std::erf(x * std::exp(s / 2) / std::numbers::sqrt2); });
+  return std::max(0.0, 1 - below);
 }
 
 // L^2 = l^2 e^-s with a e^s ~ Gamma(a). In the plane the mean has the form of matern.
@@ -81,6 +81,7 @@ double stretched_share(double power, double x, int dimension) {
 }  // namespace
 
 double spectrum_share_above(Family family, double shape, double x, int dimension) {
+  if (std::isinf(x)) return 0;
   switch (family) {
     case Family::gaussian:
       return gaussian_share(x, dimension);

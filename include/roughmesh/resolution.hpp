@@ -16,7 +16,8 @@ namespace roughmesh {
 /// How well the linear interpolant on the mesh follows a field of unit rms height, and how large
 /// the heights may be. Formulas: docs/math.md, section "Resolution".
 struct Resolution {
-  double mesh_size = 0;              ///< h, the median edge
+  double mesh_size = 0;  ///< h, the median edge
+  double largest_edge = 0;
   std::array<double, 3> lengths{};   ///< correlation length along each axis; equal when isotropic
   std::array<double, 3> h_over_l{};  ///< the rule of the method's source: at most 1 / 2.5
   double spectrum_share_above_nyquist =
@@ -31,12 +32,13 @@ struct Resolution {
   double largest_safe_rq = 0;  ///< min_curvature_radius / expected_max_height; infinite when flat
 };
 
-/// @param rq_free  everything in the result is per unit of Rq or independent of it
+/// Everything in the result is per unit of Rq or independent of it.
 Resolution assess_resolution(const Surface& surface, const Autocorrelation& autocorrelation,
                              const Distance& distance);
 
 /// One line for each limit that rms roughness `rq` on this surface passes: coarse mesh, rough
-/// spectrum, heights beyond the radius of curvature. Empty when all is well.
+/// spectrum, heights beyond the radius of curvature. Empty when all is well. The limits are those
+/// of docs/math.md, section "Resolution".
 std::vector<std::string> resolution_warnings(const Resolution& resolution, double rq);
 
 }  // namespace roughmesh
