@@ -12,7 +12,8 @@ Factor::Factor(DenseMatrix columns, std::vector<Index> order, FactorShape shape)
       order_(std::move(order)),
       row_of_point_(order_.size()),
       shape_(shape) {
-  for (std::size_t row = 0; row < order_.size(); ++row) row_of_point_[order_[row]] = row;
+  for (std::size_t row = 0; row < order_.size(); ++row)
+    row_of_point_[order_[row]] = static_cast<Index>(row);
 }
 
 /// rows = the product of rows [begin, begin + rows.size()) of L with the noise. These few rows stay
@@ -44,13 +45,16 @@ std::vector<double> Factor::covariances(std::span<const PointPair> pairs) const 
   std::vector<double> sums(pairs.size(), 0.0);
   // Columns outside, pairs inside: L is read column by column as it lies in memory, once per range,
   // so there are few ranges.
-  parallel_for(pairs.size(), 2048, [&](std::size_t begin, std::size_t end) {
+  parallel_for(pairs.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    std::vector<PointPair> rows;  // the upper one first
+    for (const auto& [a, b] : pairs.subspan(begin, end - begin))
+      rows.emplace_back(std::minmax(row_of_point_[a], row_of_point_[b]));
     for (std::size_t k = 0; k < rank(); ++k) {
       const double* const column = columns_.column(k);
-      for (std::size_t p = begin; p < end; ++p) {
-        const std::size_t a = row_of_point_[pairs[p].first], b = row_of_point_[pairs[p].second];
-        if (std::min(a, b) >= first_row(k)) sums[p] += column[a] * column[b];
-      }
+      const auto first = static_cast<Index>(first_row(k));
+      for (std::size_t p = 0; p < rows.size(); ++p)
+        if (rows[p].first >= first)
+          sums[begin + p] += column[rows[p].first] * column[rows[p].second];
     }
   });
   return sums;

@@ -45,7 +45,7 @@ class Factor {
 
   DenseMatrix columns_;
   std::vector<Index> order_;
-  std::vector<std::size_t> row_of_point_;
+  std::vector<Index> row_of_point_;
   FactorShape shape_;
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include <Eigen/Core>
 #include <cblas.h>
 #include <fmt/format.h>
 #include <lapacke.h>
@@ -19,7 +20,7 @@ namespace {
 // Columns of a panel, by measurement: wide enough that the update of the rest runs at the speed of
 // a matrix product, narrow enough that the panel itself takes little of the time.
 constexpr std::size_t plain_panel = 256;
-constexpr std::size_t pivoted_panel = 96;
+constexpr std::size_t pivoted_panel = 64;
 
 int as_int(std::size_t n) { return static_cast<int>(n); }
 
@@ -71,20 +72,25 @@ struct PivotedPanels {
     std::swap_ranges(a.column(j) + p + 1, a.column(j) + n, a.column(p) + p + 1);
   }
 
-  /// Column j of L from column j of R less the columns of the panel before it.
+  /// Column j of L from column j of R less the columns of the panel before it. By Eigen, on one
+  /// thread: each of some thousand calls is so short that waiting for threads would cost more than
+  /// they bring, and far more on a busy machine.
   void eliminate(std::size_t panel, std::size_t j) {
-    const int n = as_int(a.n_rows());
-    const int below = n - as_int(j) - 1;
-    double* const column = a.column(j);
-    column[j] = std::sqrt(remaining[j]);
-    if (below == 0) return;
-    if (j > panel)
-      cblas_dgemv(CblasColMajor, CblasNoTrans, below, as_int(j - panel), -1.0, &a(j + 1, panel), n,
-                  &a(j, panel), n, 1.0, column + j + 1, 1);
-    for (std::size_t i = j + 1; i < a.n_rows(); ++i) {
-      column[i] /= column[j];
-      remaining[i] -= column[i] * column[i];
-    }
+    const auto below = static_cast<Eigen::Index>(a.n_rows() - j - 1);
+    const auto before = static_cast<Eigen::Index>(j - panel);
+    const Eigen::OuterStride<> stride(static_cast<Eigen::Index>(a.n_rows()));
+    const Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>> rows(a.column(panel) + j + 1,
+                                                                          below, before, stride);
+    const Eigen::Map<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>> row(
+        a.column(panel) + j, before, Eigen::InnerStride<>(stride.outer()));
+    Eigen::Map<Eigen::VectorXd> column(a.column(j) + j + 1, below);
+    Eigen::Map<Eigen::VectorXd> left(remaining.data() + j + 1, below);
+
+    const double pivot = std::sqrt(remaining[j]);
+    a(j, j) = pivot;
+    column.noalias() -= rows * row.transpose();
+    column /= pivot;
+    left -= column.cwiseAbs2();
   }
 
   /// Columns of the panel [begin, end) until nothing above the tolerance remains; returns how far

@@ -237,6 +237,21 @@ TEST(CholeskyMethod, MultipleEigenvaluesDoNotMoveTheHeights) {
             1e-8);
 }
 
+// Four copies of each point make three quarters of the eigenvalues 0, which round-off moves by
+// 1e-15. Their square roots would move by 3e-8; f, whose slope is at most 1e5, moves by 1e-10.
+TEST(CholeskyMethod, VanishingEigenvaluesDoNotMoveTheHeights) {
+  const std::vector<Vec3> points = sphere_points(2);
+  const Autocorrelation autocorrelation(options(Family::gaussian, 1.0));
+  const Distance distance = Distance::great_circle(points);
+  const std::size_t n = points.size();
+  const AutocorrelationMatrix copies{
+      4 * n, [&](std::size_t j, std::span<double> below) {
+        for (std::size_t i = 0; i < below.size(); ++i)
+          below[i] = autocorrelation.rho(distance(points[(j + 1 + i) % n], points[j % n]));
+      }};
+  EXPECT_LT(sensitivity(copies, Factorization::eigenvalue), 1e-8);
+}
+
 // The same points turned: R is the same but for round-off, and so are the heights.
 TEST(CholeskyMethod, ARotationMovesTheHeightsByRoundOffOnly) {
   const std::vector<Vec3> points = sphere_points(3);
