@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Families, their limits and conversions against their definitions.
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <string>
@@ -285,8 +287,8 @@ TEST(Autocorrelation, SpectrumShareEqualsTheTransform) {
     }
 }
 
-// Parseval's form of the definition: the share of a stretched family lies between those of its
-// neighbours, also where brute force is hopeless, and is monotone in q.
+// Where brute force is hopeless: the share of a mean of Gaussians falls with q, from 1 to 0, and
+// continues across the closed form at p = 1.
 TEST(Autocorrelation, SpectrumShareFallsFromOneToZeroForExtremeParameters) {
   for (const Autocorrelation& acf :
        {matern(1e-6), matern(0.01), matern(1e6), stretched(1e-3), stretched(0.01), stretched(0.999),
