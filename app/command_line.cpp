@@ -52,12 +52,11 @@ CLI::Option* add_option(CLI::App& app, const OptionText& text, Member& member) {
     return app.add_option_function<std::string>(
         flag, set,
         help + ": " + listed_choices<Member>() + "; default " + std::string(name(member)));
-  } else if constexpr (std::is_same_v<Member, std::optional<double>>) {
-    // Bound directly, the parser takes an empty text for an absent number.
-    return app.add_option_function<double>(
-        flag, [&member](double value) { member = value; }, help);
   } else {
     CLI::Option* option = app.add_option(flag, member, help);
+    // The parser takes an empty text for the number 0.
+    if constexpr (!std::is_same_v<Member, std::string>)
+      option->check([](const std::string& given) { return given.empty() ? "is empty" : ""; });
     if constexpr (std::is_arithmetic_v<Member>)
       if (member != Member{}) option->description(fmt::format("{}; default {}", help, member));
     if constexpr (std::is_same_v<Member, std::vector<double>>) option->delimiter(',')->expected(1);

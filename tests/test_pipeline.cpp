@@ -147,6 +147,7 @@ TEST(Pipeline, NodesMoveByTheirHeightAlongTheNormal) {
 TEST(Pipeline, TheInteriorFollowsAndTheBoxStays) {
   const Mesh mesh = test::ball_in_box(12);
   RoughenOptions options = sphere_options();
+  options.rms = 0.01;
   options.group = {"surface"};
   const Result result = run(mesh, options);
   const Mesh& rough = result.meshes[0].mesh;

@@ -28,14 +28,14 @@ std::string_view name(VolumeChoice choice);
 
 /// Lengths are in the unit of the mesh, angles in degrees (they are typed by people).
 struct RoughenOptions {
-  std::string input;
-  std::string output;
-  std::vector<std::string> group;
+  std::string input = {};
+  std::string output = {};
+  std::vector<std::string> group = {};
   double rms = 0;
-  std::vector<double> length;
+  std::vector<double> length = {};
   Family acf = Family::gaussian;
   LengthDefinition length_definition = LengthDefinition::formula;
-  std::optional<double> nu, hurst, rolloff, power, alpha;
+  std::optional<double> nu = {}, hurst = {}, rolloff = {}, power = {}, alpha = {};
   double angle = 0;
   DistanceKind distance = DistanceKind::euclidean;
   std::string method = "auto";
@@ -47,8 +47,8 @@ struct RoughenOptions {
   double edge_angle = 40;
   bool flip = false;
   bool allow_invalid = false;
-  std::string unit;
-  std::string report;
+  std::string unit = {};
+  std::string report = {};
   int threads = 0;
   bool quiet = false;
 };
