@@ -14,7 +14,7 @@
 
 #include "roughmesh/field.hpp"
 
-#include "../tests/support/meshes.hpp"
+#include "support/meshes.hpp"
 
 namespace {
 

@@ -15,8 +15,8 @@
 #include "roughmesh/displace.hpp"
 #include "roughmesh/move_volume.hpp"
 
-#include "../tests/support/meshes.hpp"
 #include "harmonic.hpp"
+#include "support/meshes.hpp"
 
 namespace {
 

@@ -14,8 +14,8 @@
 
 #include "roughmesh/mesh_io.hpp"
 
-#include "../tests/support/files.hpp"
-#include "../tests/support/msh_files.hpp"
+#include "support/files.hpp"
+#include "support/msh_files.hpp"
 
 using namespace roughmesh;
 

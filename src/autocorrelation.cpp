@@ -38,16 +38,6 @@ std::string_view name_in(const Names& names, Value value) {
   return {};
 }
 
-template <class Names>
-auto value_in(const Names& names, std::string_view option, std::string_view name) {
-  std::string known;
-  for (const auto& [value, candidate] : names) {
-    if (candidate == name) return value;
-    known += fmt::format("{}{}", known.empty() ? "" : ", ", candidate);
-  }
-  throw InputError(fmt::format("{} \"{}\" is not known; choose one of {}", option, name, known));
-}
-
 // One optional parameter, the family it belongs to and the values it may take: below `below`, or up
 // to and including `at_most`.
 struct Parameter {
@@ -219,12 +209,6 @@ double formula_length(const AutocorrelationOptions& options, double shape) {
 std::string_view name(Family family) { return name_in(family_names, family); }
 
 std::string_view name(LengthDefinition definition) { return name_in(definition_names, definition); }
-
-Family family_from_name(std::string_view name) { return value_in(family_names, "--acf", name); }
-
-LengthDefinition length_definition_from_name(std::string_view name) {
-  return value_in(definition_names, "--length-definition", name);
-}
 
 Autocorrelation::Autocorrelation(const AutocorrelationOptions& options) : family_(options.family) {
   check_parameters(options);

@@ -12,9 +12,6 @@
 namespace roughmesh {
 namespace {
 
-constexpr std::array<std::pair<DistanceKind, std::string_view>, 2> kind_names = {
-    {{DistanceKind::euclidean, "euclidean"}, {DistanceKind::great_circle, "great-circle"}}};
-
 // Points about their mean, in units of their root mean square distance from it: neither a far
 // origin nor the length unit costs digits.
 struct NormalizedPoints {
@@ -104,16 +101,7 @@ Sphere fit_sphere(std::span<const Vec3> points) {
 }
 
 std::string_view name(DistanceKind kind) {
-  for (const auto& [candidate, name] : kind_names)
-    if (candidate == kind) return name;
-  return {};
-}
-
-DistanceKind distance_kind_from_name(std::string_view name) {
-  for (const auto& [kind, candidate] : kind_names)
-    if (candidate == name) return kind;
-  throw InputError(
-      fmt::format("--distance \"{}\" is not known; choose one of euclidean, great-circle", name));
+  return kind == DistanceKind::great_circle ? "great-circle" : "euclidean";
 }
 
 Distance Distance::euclidean() { return {}; }

@@ -375,21 +375,6 @@ TEST(Autocorrelation, RefusesLengthDefinitionsThatDoNotExist) {
                {"--length-definition", "integral", "stretched"});
 }
 
-TEST(Autocorrelation, NamesAreThoseOfTheCommandLine) {
-  for (const char* known :
-       {"gaussian", "exponential", "matern", "self-affine", "stretched", "rational-quadratic"})
-    EXPECT_EQ(name(family_from_name(known)), known);
-  for (const char* known : {"formula", "one-over-e", "integral", "sal"})
-    EXPECT_EQ(name(length_definition_from_name(known)), known);
-  try {
-    family_from_name("Gauss");
-    FAIL();
-  } catch (const InputError& error) {
-    expect_words(error.what(), {"--acf", "Gauss", "gaussian", "rational-quadratic"});
-  }
-  EXPECT_THROW(length_definition_from_name(""), InputError);
-}
-
 TEST(Autocorrelation, RefusesSpectraItDoesNotHave) {
   EXPECT_THROW(gaussian().spectrum_share_above(-1, 2), InputError);
   EXPECT_THROW(gaussian().spectrum_share_above(std::nan(""), 2), InputError);

@@ -234,9 +234,3 @@ TEST(Distance, GreatCircleRefusesWhatIsNoSphere) {
   EXPECT_NE(message.find("--distance euclidean"), std::string::npos) << message;
   EXPECT_THROW(Distance::great_circle(Sphere{}), InputError);
 }
-
-TEST(Distance, NamesAreThoseOfTheCommandLine) {
-  for (const char* known : {"euclidean", "great-circle"})
-    EXPECT_EQ(name(distance_kind_from_name(known)), known);
-  EXPECT_THROW(distance_kind_from_name("geodesic"), InputError);
-}

@@ -28,9 +28,6 @@ enum class LengthDefinition {
 
 std::string_view name(Family family);                ///< as on the command line: "self-affine"
 std::string_view name(LengthDefinition definition);  ///< "one-over-e"
-Family family_from_name(std::string_view name);      ///< @throws InputError listing the names
-LengthDefinition length_definition_from_name(
-    std::string_view name);  ///< @throws InputError likewise
 
 struct AutocorrelationOptions {
   Family family = Family::gaussian;

@@ -34,8 +34,6 @@ struct Anisotropy {
 enum class DistanceKind { euclidean, great_circle };
 
 std::string_view name(DistanceKind kind);  ///< "euclidean", "great-circle"
-DistanceKind distance_kind_from_name(
-    std::string_view name);  ///< @throws InputError listing the names
 
 /// d(x, y), symmetric, d(x, x) = 0. A value; cheap to copy.
 class Distance {
