@@ -111,11 +111,6 @@ std::vector<Index> identity_order(std::size_t n) {
   return order;
 }
 
-PreparedField make_prepared(DenseMatrix a, std::vector<Index> order, FactorShape shape,
-                            FieldSummary summary) {
-  return {Factor(std::move(a), std::move(order), shape), std::move(summary)};
-}
-
 /// Largest |variance - 1| of a factor.
 double variance_change(const Factor& factor) {
   std::vector<PointPair> diagonal(factor.order().size());
@@ -139,10 +134,9 @@ PreparedField prepare_by_eigenvalues(DenseMatrix a, FieldSummary summary) {
   summary.rank = static_cast<Index>(n) - n_below(remaining_diagonal);
   summary.negative_eigenvalues = n_below(-remaining_diagonal);
   summary.smallest_eigenvalue = eigenvalues.front();
-  PreparedField field =
-      make_prepared(std::move(a), identity_order(n), FactorShape::full, std::move(summary));
-  field.summary.variance_change = variance_change(field.factor);
-  return field;
+  Factor factor(std::move(a), identity_order(n), FactorShape::full);
+  summary.variance_change = variance_change(factor);
+  return {std::move(factor), summary};
 }
 
 PreparedField prepare(const AutocorrelationMatrix& matrix) {
@@ -153,8 +147,7 @@ PreparedField prepare(const AutocorrelationMatrix& matrix) {
   if (may_be_well_conditioned(a)) {
     if (cholesky(a, smallest_plain_pivot)) {
       summary.rank = static_cast<Index>(matrix.n);
-      return make_prepared(std::move(a), identity_order(matrix.n), FactorShape::trapezoid,
-                           std::move(summary));
+      return {Factor(std::move(a), identity_order(matrix.n), FactorShape::trapezoid), summary};
     }
     assemble(matrix, a);
   }
@@ -165,12 +158,11 @@ PreparedField prepare(const AutocorrelationMatrix& matrix) {
     a.keep_columns(pivoted.rank);
     summary.factorization = Factorization::pivoted_cholesky;
     summary.rank = static_cast<Index>(pivoted.rank);
-    return make_prepared(std::move(a), std::move(pivoted.order), FactorShape::trapezoid,
-                         std::move(summary));
+    return {Factor(std::move(a), std::move(pivoted.order), FactorShape::trapezoid), summary};
   }
 
   assemble(matrix, a);
-  return prepare_by_eigenvalues(std::move(a), std::move(summary));
+  return prepare_by_eigenvalues(std::move(a), summary);
 }
 
 }  // namespace

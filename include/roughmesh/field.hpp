@@ -66,7 +66,7 @@ class FieldSampler {
  public:
   /// @param points  n >= 1 distinct points in canonical order (Surface::points)
   /// @throws InputError      no points or one that is not finite; tolerance out of range; too
-  /// little free memory, naming what is needed
+  ///                         little free memory, naming what is needed
   /// @throws NumericalError  a correlation that is not a number; the eigenvalue decomposition did
   ///                         not converge
   FieldSampler(std::span<const Vec3> points, const Autocorrelation& autocorrelation,
