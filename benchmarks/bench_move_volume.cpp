@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <random>
 #include <thread>
 #include <vector>
 
@@ -16,7 +17,7 @@
 #include "roughmesh/move_volume.hpp"
 
 #include "harmonic.hpp"
-#include "support/meshes.hpp"
+#include "support/cells.hpp"
 
 namespace {
 
@@ -35,6 +36,21 @@ double seconds(const Work& work) {
   return best;
 }
 
+// A box whose tetrahedra have volumes and shapes as uneven as those of a mesh generator.
+Mesh uneven_box(int divisions) {
+  Mesh mesh = test::cell_box(ElementShape::tetrahedron, divisions);
+  std::erase_if(mesh.blocks, [](const ElementBlock& b) {
+    return b.physical_groups == std::vector<Tag>{2} && b.type == test::triangle_type;
+  });
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(-0.2 / divisions, 0.2 / divisions);
+  for (Vec3& x : mesh.nodes) {
+    const Vec3 shift(uniform(random), uniform(random), uniform(random));
+    if (x.minCoeff() > 0 && x.maxCoeff() < 1 && x.z() != 0.5) x += shift;
+  }
+  return mesh;
+}
+
 // The system the mover assembles, rebuilt from what is known about this mesh.
 detail::HarmonicExtension rebuild(const Mesh& mesh, const Surface& surface) {
   detail::NodeRoles roles;
@@ -43,7 +59,8 @@ detail::HarmonicExtension rebuild(const Mesh& mesh, const Surface& surface) {
     roles.given[surface.nodes[i]] = surface.point_of_node[i];
   roles.n_given = surface.n_points();
   for (std::size_t node = 0; node < mesh.nodes.size(); ++node) {
-    const bool on_box = mesh.nodes[node].lpNorm<Eigen::Infinity>() > 1 - 1e-9;
+    const Vec3& x = mesh.nodes[node];
+    const bool on_box = x.minCoeff() == 0 || x.maxCoeff() == 1;
     roles.unknown.push_back(on_box || roles.given[node] >= 0 ? -1 : roles.n_unknown++);
   }
   std::vector<detail::Tetrahedron> tetrahedra;
@@ -75,12 +92,13 @@ void print(const char* stage, double time, double product) {
 }  // namespace
 
 int main() {
-  const Mesh mesh = test::ball_in_box(48);
-  const SurfaceOptions options{.groups = {"surface"}};
+  constexpr int divisions = 48;
+  const Mesh mesh = uneven_box(divisions);
+  const SurfaceOptions options{.groups = {"middle"}};
   const Surface surface = select_surface(mesh, options);
   std::vector<double> heights;
   for (const Vec3& x : surface.points)
-    heights.push_back(0.3 * surface.mesh_size.median * std::sin(40 * x.x()) * std::cos(40 * x.y()));
+    heights.push_back(0.5 / divisions * std::sin(40 * x.x()) * std::cos(40 * x.y()));
   const std::vector<Vec3> displacements = displace(surface, heights);
   const VolumeMover mover(mesh, surface);
   const std::vector<Vec3> moved = mover.move(displacements);

@@ -11,7 +11,7 @@
 
 #include "roughmesh/mesh.hpp"
 
-#include "support/meshes.hpp"
+#include "meshes.hpp"
 
 namespace roughmesh::test {
 
