@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include <Eigen/IterativeLinearSolvers>
 #include <fmt/format.h>
@@ -130,8 +129,9 @@ struct RowRange {
   }
 };
 
-HarmonicExtension::Matrix join(const std::vector<RowRange>& ranges, Index n_rows, Index n_columns) {
-  HarmonicExtension::Matrix matrix(n_rows, n_columns);
+void join(const std::vector<RowRange>& ranges, Index n_rows, Index n_columns,
+          HarmonicExtension::Matrix& matrix) {
+  matrix.resize(n_rows, n_columns);
   Index* offsets = matrix.outerIndexPtr();
   std::size_t row = 0;
   for (const RowRange& range : ranges)
@@ -146,7 +146,6 @@ HarmonicExtension::Matrix join(const std::vector<RowRange>& ranges, Index n_rows
               matrix.innerIndexPtr() + first);
     std::copy(ranges[begin].values.begin(), ranges[begin].values.end(), matrix.valuePtr() + first);
   });
-  return matrix;
 }
 
 // Builds each row from the tetrahedra around its unknown: no two threads write to one number, and
@@ -225,8 +224,8 @@ HarmonicExtension::HarmonicExtension(std::span<const Vec3> nodes,
     const std::size_t range = begin / rows_per_range;
     assembly.rows(begin, end, stiffness[range], coupling[range]);
   });
-  stiffness_ = join(stiffness, roles.n_unknown, roles.n_unknown);
-  coupling_ = join(coupling, roles.n_unknown, roles.n_given);
+  join(stiffness, roles.n_unknown, roles.n_unknown, stiffness_);
+  join(coupling, roles.n_unknown, roles.n_given, coupling_);
 }
 
 std::vector<Vec3> HarmonicExtension::extend(std::span<const Vec3> given) const {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <optional>
 
 #include <fmt/format.h>
 
@@ -21,7 +20,7 @@ struct VolumeMover::Plan {
   std::vector<Index> point_of_node;  // of surface_nodes
   std::size_t n_points = 0;
   std::vector<Index> free_nodes;
-  std::optional<detail::HarmonicExtension> extension;  // none without volume elements
+  std::unique_ptr<const detail::HarmonicExtension> extension;  // none without volume elements
   Index n_wall_nodes = 0;
 };
 
@@ -150,7 +149,9 @@ VolumeMover::VolumeMover(const Mesh& mesh, const Surface& surface, VolumeMethod 
   require_linear_elements(mesh, roles);
   for (Index node = 0; node < mesh.n_nodes(); ++node)
     if (roles.unknown[node] >= 0) plan->free_nodes.push_back(node);
-  if (moves_interior) plan->extension.emplace(mesh.nodes, deforming_tetrahedra(mesh, roles), roles);
+  if (moves_interior)
+    plan->extension = std::make_unique<const detail::HarmonicExtension>(
+        mesh.nodes, deforming_tetrahedra(mesh, roles), roles);
   plan_ = std::move(plan);
 }
 

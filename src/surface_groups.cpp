@@ -71,7 +71,7 @@ std::optional<PhysicalGroup> find_group(const Mesh& mesh, const std::string& tex
         found = group;
     return found;
   };
-  const auto named = best([&](const PhysicalGroup& g) { return g.name == text; });
+  auto named = best([&](const PhysicalGroup& g) { return g.name == text; });
   if (named || !number(text)) return named;
   return best([tag = *number(text)](const PhysicalGroup& g) { return g.tag == tag; });
 }

@@ -259,6 +259,17 @@ TEST(MoveVolume, ASurfaceMeshMovesItsSurfaceOnly) {
     EXPECT_EQ(moved[node].z(), mesh.nodes[node].y() <= 0.5 ? 1 : 0);
 }
 
+TEST(MoveVolume, OnDemandTheInteriorStays) {
+  const Mesh mesh = test::ball_in_box(8);
+  const Surface surface = ball(mesh);
+  const VolumeMover mover(mesh, surface, VolumeMethod::none);
+  EXPECT_EQ(mover.method(), VolumeMethod::none);
+  const std::vector<Vec3> moved = mover.move(constant(surface, Vec3::UnitX()));
+  const std::set<Index> on_surface(surface.nodes.begin(), surface.nodes.end());
+  for (Index node = 0; node < mesh.n_nodes(); ++node)
+    EXPECT_EQ(moved[node], mesh.nodes[node] + Vec3(on_surface.contains(node) ? 1 : 0, 0, 0));
+}
+
 // Flat elements have no weight 1 / V; a node in nothing else has no equation and stays.
 TEST(MoveVolume, FlatElementsDoNoHarm) {
   Mesh mesh = test::ball_in_box(8);
