@@ -21,7 +21,7 @@ struct SineCosine {
 /// Sine and cosine of 2 pi `turn`, turn in [0, 1). Taking off the nearest quarter turn is exact, so
 /// that the mathematics library sees angles of at most pi/4, where libraries agree best.
 SineCosine sine_cosine_of_turn(double turn) {
-  const int quarter = static_cast<int>(4 * turn + 0.5);
+  const int quarter = static_cast<int>(std::lround(4 * turn));
   const double angle = 2 * std::numbers::pi * (turn - 0.25 * quarter);
   const double s = std::sin(angle), c = std::cos(angle);
   switch (quarter % 4) {
