@@ -14,14 +14,14 @@
 
 namespace roughmesh {
 
-/// One realization, as the pipeline hands it over.
+/// One realization, as the pipeline hands it over; lent until `deliver` returns.
 struct RoughMesh {
   std::uint64_t realization = 0;
-  Mesh mesh;  ///< the input with moved nodes
-  MeshCheck check;
-  std::vector<double> heights;      ///< one per node of the mesh; 0 off the surface
-  std::vector<Vec3> normals;        ///< one per node of the mesh; zero off the surface
-  std::vector<Vec3> displacements;  ///< one per node of the mesh
+  Mesh mesh = {};  ///< the input with moved nodes
+  MeshCheck check = {};
+  std::vector<double> heights = {};      ///< one per node of the mesh; 0 off the surface
+  std::vector<Vec3> normals = {};        ///< one per node of the mesh; zero off the surface
+  std::vector<Vec3> displacements = {};  ///< one per node of the mesh
 };
 
 /// Takes one rough mesh, for example to write it. The last entry of report.realizations belongs to

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "warnings.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "roughmesh/mesh_io.hpp"
+
+namespace roughmesh::detail {
+
+void warn_of_surface(Report& report, const Surface& surface) {
+  if (surface.n_sharp_edges > 0)
+    report.warnings.push_back(fmt::format(
+        "{} sharp edges (more than {:g} degrees): their nodes move along averaged normals, which "
+        "lowers the roughness there; round the edges for exact statistics",
+        surface.n_sharp_edges, report.request.edge_angle));
+  if (surface.n_nonmanifold_edges > 0)
+    report.warnings.push_back(fmt::format(
+        "{} edges join three or more faces: normals along them are a compromise; choose one "
+        "--group at a time",
+        surface.n_nonmanifold_edges));
+  if (surface.n_duplicate_faces > 0)
+    report.warnings.push_back(fmt::format(
+        "{} faces stand on the nodes of another one and count once", surface.n_duplicate_faces));
+}
+
+void warn_of_scale(Report& report, const Mesh& mesh, const Surface& surface) {
+  const double rq = report.request.rms;
+  for (std::string& warning : resolution_warnings(report.resolution, rq))
+    report.warnings.push_back(std::move(warning));
+  const double spacing = coordinate_spacing(mesh);
+  if (rq < 1000 * spacing)
+    report.warnings.push_back(fmt::format(
+        "--rms {:g} is only {:.3g} spacings of the numbers the file can hold ({:.3g}): heights "
+        "are rounded; use a file with more digits",
+        rq, rq / spacing, spacing));
+  const double size = std::sqrt(surface.area);
+  const double length = report.lengths.formula;
+  if (length > size)
+    report.warnings.push_back(fmt::format(
+        "correlation length {:g} is larger than the surface (square root of its area {:.3g}): it "
+        "moves nearly as a whole; check the unit",
+        length, size));
+}
+
+void warn_of_field(Report& report) {
+  if (report.audit.covariance_error > report.request.tolerance)
+    report.warnings.push_back(
+        fmt::format("audited covariance error {:.3g} is above the tolerance {:g}",
+                    report.audit.covariance_error, report.request.tolerance));
+  if (report.field.variance_change > 1e-3)
+    report.warnings.push_back(fmt::format(
+        "this autocorrelation is not positive definite for this distance: {} negative "
+        "eigenvalues were set to zero, which changes variances by up to {:.3g}; use a shorter "
+        "length or --distance euclidean",
+        report.field.negative_eigenvalues, report.field.variance_change));
+}
+
+void warn_of_walls(Report& report, const VolumeMover& mover) {
+  if (mover.n_wall_nodes() > 0)
+    report.warnings.push_back(fmt::format(
+        "{} nodes of the rough surface lie on faces that are not roughened; they move along the "
+        "normals of the rough surface",
+        mover.n_wall_nodes()));
+}
+
+}  // namespace roughmesh::detail
