@@ -16,20 +16,20 @@ namespace roughmesh {
 /// How well the linear interpolant on the mesh follows a field of unit rms height, and how large
 /// the heights may be. Formulas: docs/math.md, section "Resolution".
 struct Resolution {
-  double mesh_size = 0;  ///< h, the median edge
-  double largest_edge = 0;
+  double mesh_size = 0;              ///< h, the median edge
+  double largest_edge = 0;           ///< where the mesh is coarsest
   std::array<double, 3> lengths{};   ///< correlation length along each axis; equal when isotropic
   std::array<double, 3> h_over_l{};  ///< the rule of the method's source: at most 1 / 2.5
-  double spectrum_share_above_nyquist =
-      0;  ///< share of the variance above pi / h, worst axis, two-dimensional
-  double interpolation_error = 0;     ///< rms at mid-edge over Rq, worst axis
-  double rms_slope = 0;               ///< of the linear interpolant on this mesh, times 1 / Rq
-  std::optional<double> field_slope;  ///< of the field itself, times 1 / Rq, where it exists
-  double expected_max_height =
-      0;  ///< of one realization over Rq, by the number of independent patches
-  double min_curvature_radius =
-      0;                       ///< smallest local radius of curvature; infinite for flat surfaces
-  double largest_safe_rq = 0;  ///< min_curvature_radius / expected_max_height; infinite when flat
+
+  /// Share of the variance above the Nyquist wavenumber pi / h, two-dimensional, on the worst axis.
+  double spectrum_share_above_nyquist = 0;
+  double interpolation_error = 0;     ///< rms at mid-edge over Rq, on the worst axis
+  double rms_slope = 0;               ///< of the linear interpolant on this mesh, over Rq
+  std::optional<double> field_slope;  ///< of the field itself, over Rq, where it exists
+
+  double expected_max_height = 0;   ///< largest |height| of one realization to expect, over Rq
+  double min_curvature_radius = 0;  ///< smallest local radius of curvature; infinite when flat
+  double largest_safe_rq = 0;       ///< min_curvature_radius / expected_max_height
 };
 
 /// Everything in the result is per unit of Rq or independent of it.
