@@ -2,6 +2,9 @@
 #include "command_line.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <optional>
+#include <string_view>
 #include <type_traits>
 
 #include <CLI/CLI.hpp>
@@ -33,36 +36,71 @@ std::string listed_choices() {
   return names;
 }
 
+/// The whole text as a number, in base 10.
+template <class Number>
+Number parse_number(std::string_view text, const std::string& flag) {
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error == std::errc() && end == text.data() + text.size()) return number;
+  const char* const wanted =
+      std::is_floating_point_v<Number> ? "a number" : "a whole number from 0 on";
+  throw InputError(fmt::format("{}: {}; must be {}", flag, text, wanted));
+}
+
+std::vector<double> parse_list(std::string_view text, const std::string& flag) {
+  std::vector<double> numbers;
+  for (std::size_t comma = text.find(','); comma != text.npos; comma = text.find(',')) {
+    numbers.push_back(parse_number<double>(text.substr(0, comma), flag));
+    text.remove_prefix(comma + 1);
+  }
+  numbers.push_back(parse_number<double>(text, flag));
+  return numbers;
+}
+
+template <class Enum>
+Enum parse_choice(std::string_view text, const std::string& flag) {
+  for (const Enum choice : Choices<Enum>::values)
+    if (text == name(choice)) return choice;
+  throw InputError(fmt::format("{}: {}; must be one of {}", flag, text, listed_choices<Enum>()));
+}
+
+template <class Member>
+void parse_into(Member& member, const std::string& text, const std::string& flag) {
+  if constexpr (std::is_enum_v<Member>)
+    member = parse_choice<Member>(text, flag);
+  else if constexpr (std::is_same_v<Member, std::vector<double>>)
+    member = parse_list(text, flag);
+  else if constexpr (std::is_same_v<Member, std::optional<double>>)
+    member = parse_number<double>(text, flag);
+  else if constexpr (std::is_arithmetic_v<Member>)
+    member = parse_number<Member>(text, flag);
+  else
+    member = text;
+}
+
+/// The help of an option, with its choices and default.
+template <class Member>
+std::string described(const OptionText& text, const Member& member) {
+  if constexpr (std::is_enum_v<Member>)
+    return fmt::format("{}: {}; default {}", text.help, listed_choices<Member>(), name(member));
+  else if constexpr (std::is_arithmetic_v<Member>)
+    return member == Member{} ? std::string(text.help)
+                              : fmt::format("{}; default {}", text.help, member);
+  else
+    return std::string(text.help);
+}
+
 template <class Member>
 CLI::Option* add_option(CLI::App& app, const OptionText& text, Member& member) {
   const std::string flag = flag_of(text);
-  const std::string help(text.help);
-  if constexpr (std::is_same_v<Member, bool>) {
-    return app.add_flag(flag, member, help);
-  } else if constexpr (std::is_enum_v<Member>) {
-    const auto set = [&member, flag](const std::string& given) {
-      for (const Member choice : Choices<Member>::values)
-        if (given == name(choice)) {
-          member = choice;
-          return;
-        }
-      throw InputError(
-          fmt::format("{}: {}; must be one of {}", flag, given, listed_choices<Member>()));
-    };
+  if constexpr (std::is_same_v<Member, bool>)
+    return app.add_flag(flag, member, std::string(text.help));
+  else if constexpr (std::is_same_v<Member, std::vector<std::string>>)
+    return app.add_option(flag, member, std::string(text.help))->expected(1)->take_all();
+  else
     return app.add_option_function<std::string>(
-        flag, set,
-        help + ": " + listed_choices<Member>() + "; default " + std::string(name(member)));
-  } else {
-    CLI::Option* option = app.add_option(flag, member, help);
-    // The parser takes an empty text for the number 0.
-    if constexpr (!std::is_same_v<Member, std::string>)
-      option->check([](const std::string& given) { return given.empty() ? "is empty" : ""; });
-    if constexpr (std::is_arithmetic_v<Member>)
-      if (member != Member{}) option->description(fmt::format("{}; default {}", help, member));
-    if constexpr (std::is_same_v<Member, std::vector<double>>) option->delimiter(',')->expected(1);
-    if constexpr (std::is_same_v<Member, std::vector<std::string>>) option->expected(1)->take_all();
-    return option;
-  }
+        flag, [&member, flag](const std::string& given) { parse_into(member, given, flag); },
+        described(text, member));
 }
 
 void add_options(CLI::App& app, RoughenOptions& options,

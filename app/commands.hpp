@@ -2,9 +2,14 @@
 // What the verbs of the command line do. Results go to stdout, warnings to stderr after success.
 #pragma once
 
+#include <string>
+
 #include "roughmesh/options.hpp"
 
 namespace roughmesh::app {
+
+/// Text for a terminal: one line, with `?` for control characters, which names of files may hold.
+std::string printable(std::string text);
 
 /// Reads the input, writes each realization and the report, prints a summary.
 void run_roughen(const RoughenOptions& options);

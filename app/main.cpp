@@ -40,7 +40,7 @@ void handle_signals() {
 }
 
 int fail(ExitCode code, const std::string& message) {
-  fmt::print(stderr, "roughmesh: {}\n", message);
+  fmt::print(stderr, "roughmesh: {}\n", app::printable(message));
   return code;
 }
 

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -76,42 +80,92 @@ void print_summary(const Report& report, const std::string& path_of_report) {
 }
 
 void print_warnings(const Report& report) {
-  for (const std::string& warning : report.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  for (const std::string& warning : report.warnings)
+    fmt::print(stderr, "warning: {}\n", printable(warning));
+}
+
+/// Keeps the report on disk up to date while realizations are made, so that after an interrupt or
+/// an error the finished ones are described.
+class ReportFile {
+ public:
+  ReportFile(std::string path, Clock::time_point start, double read_seconds)
+      : path_(std::move(path)), start_(start), read_seconds_(read_seconds) {}
+
+  /// At most once a second: an ensemble of thousands would write its report thousands of times.
+  void update(Report report) {
+    const bool is_due = !written_ || seconds_since(*written_) > 1;
+    latest_ = std::move(report);
+    if (is_due) write();
+  }
+
+  void write() {
+    latest_.timings.read = read_seconds_;
+    latest_.timings.total = seconds_since(start_);
+    write_text(to_json(latest_), path_);
+    written_ = Clock::now();
+  }
+
+  /// After an error: the realizations before it, and why there are no more.
+  void stop(const std::string& reason) noexcept {
+    if (latest_.realizations.empty()) return;
+    try {
+      latest_.warnings.push_back("stopped: " + reason);
+      write();
+    } catch (const std::exception&) {
+      return;  // the error that stopped the run is the one to tell
+    }
+  }
+
+  const std::string& path() const { return path_; }
+  const Report& latest() const { return latest_; }
+
+ private:
+  std::string path_;
+  Clock::time_point start_;
+  double read_seconds_;
+  Report latest_;
+  std::optional<Clock::time_point> written_;
+};
+
+bool is_vtu(const std::string& path) { return std::filesystem::path(path).extension() == ".vtu"; }
+
+void make_realizations(const Mesh& mesh, const RoughenOptions& options, ReportFile& file) {
+  const ProgressBar progress(options);
+  const auto deliver = [&](const RoughMesh& rough, Report& report) {
+    const std::string path = output_path(options.output, rough.realization);
+    write_mesh(rough.mesh, path, is_vtu(path) ? point_fields(rough) : std::vector<PointField>());
+    report.realizations.back().path = path;
+    file.update(report);
+    progress.show(report.realizations.size());
+  };
+  try {
+    file.update(roughen(mesh, options, deliver));
+  } catch (const std::exception& error) {
+    file.stop(error.what());
+    throw;
+  }
 }
 
 }  // namespace
+
+std::string printable(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(),
+      [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }, '?');
+  return text;
+}
 
 void run_roughen(const RoughenOptions& options) {
   const Clock::time_point start = Clock::now();
   require_files(options);
   check_options(options);
   const Mesh mesh = read_mesh(options.input);
-  const double read_seconds = seconds_since(start);
-
-  const std::string path_of_report = report_path(options);
-  const auto finish = [&](Report& report) {
-    report.timings.read = read_seconds;
-    report.timings.total = seconds_since(start);
-    write_text(to_json(report), path_of_report);
-  };
-  Report finished;  // what is known once a realization is on disk
-  try {
-    ProgressBar progress(options);
-    finished = roughen(mesh, options, [&](const RoughMesh& rough, Report& report) {
-      const std::string path = output_path(options.output, rough.realization);
-      write_mesh(rough.mesh, path, point_fields(rough));
-      report.realizations.back().path = path;
-      finished = report;
-      progress.show(report.realizations.size());
-    });
-  } catch (const Error&) {
-    if (!finished.realizations.empty()) finish(finished);
-    throw;
-  }
-  finish(finished);
+  ReportFile file(report_path(options), start, seconds_since(start));
+  make_realizations(mesh, options, file);
+  file.write();
   if (options.quiet) return;
-  print_summary(finished, path_of_report);
-  print_warnings(finished);
+  print_summary(file.latest(), file.path());
+  print_warnings(file.latest());
 }
 
 }  // namespace roughmesh::app

@@ -107,13 +107,33 @@ std::string replace_placeholders(const std::string& text, Replace&& replacement)
   return result + text.substr(from);
 }
 
+bool has_placeholder(const std::string& text) {
+  return find_placeholder(text, 0).begin != std::string::npos;
+}
+
+/// The report must not take the place of a mesh of the same run.
+void check_report(const RoughenOptions& o) {
+  if (o.output.empty()) return;
+  const auto normal = [](const std::string& path) {
+    return std::filesystem::absolute(path).lexically_normal();
+  };
+  const std::filesystem::path report = normal(report_path(o));
+  for (const std::string& path : {o.input, o.output, output_path(o.output, o.first)})
+    if (!path.empty() && normal(path) == report)
+      throw InputError(fmt::format("--report: {}; is a mesh of this run, name another file", path));
+}
+
 void check_ensemble(const RoughenOptions& o) {
+  const std::string rest =
+      replace_placeholders(o.output, [](std::size_t) { return std::string(); });
+  if (rest.find("{realization") != std::string::npos)
+    throw InputError(fmt::format(
+        "OUTPUT: {}; write {{realization}}, or {{realization:04}} for leading zeros", o.output));
   require(o.realizations >= 1, "--realizations", static_cast<double>(o.realizations), "at least 1");
   if (o.first > std::numeric_limits<std::uint64_t>::max() - o.realizations)
     throw InputError(
         fmt::format("--first: {}; --first plus --realizations must stay below 2^64", o.first));
-  const bool has_placeholder = find_placeholder(o.output, 0).begin != std::string::npos;
-  if (o.realizations > 1 && !o.output.empty() && !has_placeholder)
+  if (o.realizations > 1 && !o.output.empty() && !has_placeholder(o.output))
     throw InputError(
         fmt::format("OUTPUT: {}; must contain {{realization}} when --realizations is {}", o.output,
                     o.realizations));
@@ -139,6 +159,8 @@ std::string_view name(VolumeChoice choice) {
 }
 
 void check_options(const RoughenOptions& o) {
+  if (o.rms == 0)
+    throw InputError("--rms: missing or 0; give the rms roughness, a positive number");
   require(std::isfinite(o.rms) && o.rms > 0, "--rms", o.rms, "a positive number");
   require(std::isfinite(o.tolerance) && o.tolerance > 0, "--tolerance", o.tolerance,
           "a positive number");
@@ -147,6 +169,7 @@ void check_options(const RoughenOptions& o) {
   require(std::isfinite(o.angle), "--angle", o.angle, "a finite number of degrees");
   require(o.threads >= 0 && o.threads <= 4096, "--threads", o.threads, "from 0 to 4096");
   check_ensemble(o);
+  check_report(o);
   check_lengths(o);
   method_from_name(o.method);
   // Throws for a parameter that is missing, foreign to the family or out of range.
@@ -169,9 +192,13 @@ std::string output_path(const std::string& output, std::uint64_t realization) {
 
 std::string report_path(const RoughenOptions& options) {
   if (!options.report.empty()) return options.report;
-  const std::filesystem::path output =
-      replace_placeholders(options.output, [](std::size_t) { return std::string(); });
-  return (output.parent_path() / (output.stem().string() + ".report.json")).string();
+  const std::filesystem::path output = options.output;
+  // A folder of its own for each realization is no place for what they have in common.
+  std::filesystem::path folder = output.parent_path();
+  while (has_placeholder(folder.string())) folder = folder.parent_path();
+  const std::filesystem::path file =
+      replace_placeholders(output.filename().string(), [](std::size_t) { return std::string(); });
+  return (folder / (file.stem().string() + ".report.json")).string();
 }
 
 AutocorrelationOptions autocorrelation_options(const RoughenOptions& o) {

@@ -130,6 +130,7 @@ Report roughen(const Mesh& mesh, const RoughenOptions& options, const Deliver& d
   check_options(options);
   const detail::ThreadLimit threads(options.threads);
   Report report = begin_report(mesh, options);
+  report.request.threads = threads.n_threads();  // results are the same bits at equal threads only
   Timings& t = report.timings;
 
   const Surface surface =

@@ -82,6 +82,41 @@ TEST_F(CommandLine, AReportReproducesItsMeshByteForByte) {
   EXPECT_NE(test::read_bytes(folder / "other.msh"), bytes);
 }
 
+TEST_F(CommandLine, TakesAnisotropicLengthsAndNumbersAsWritten) {
+  const std::string job = "roughen sphere.msh --rms 0.02 -o rough.msh ";
+  const auto request = [&](const std::string& arguments) {
+    const Outcome outcome = run(job + arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << arguments << ": " << outcome.err;
+    return nlohmann::json::parse(test::read_bytes(folder / "rough.report.json"))["request"];
+  };
+  EXPECT_EQ(request("--length 1,2")["length"], (std::vector<double>{1, 2}));
+  EXPECT_EQ(request("--length=1,2,.5 --angle -30")["length"], (std::vector<double>{1, 2, 0.5}));
+  EXPECT_EQ(request("--length 1,2,inf")["length"][2], "inf");
+  EXPECT_EQ(request("--length 1 --seed 010")["seed"], 10U);
+  EXPECT_EQ(request("--length 1 --group surface --group 1")["group"],
+            (std::vector<std::string>{"surface", "1"}));
+}
+
+TEST_F(CommandLine, NeverOverwritesAFileOfTheSameRunWithItsReport) {
+  for (const std::string report : {"sphere.msh", "./rough.msh", "rough.msh"})
+    expect_failure(run(sphere_job + "-o rough.msh --report " + report), 2, report);
+  EXPECT_EQ(read_mesh(folder / "sphere.msh").n_nodes(), 162);
+}
+
+TEST_F(CommandLine, ARealizationMayHaveItsOwnFolder) {
+  for (const std::string name : {"run_0", "run_1"})
+    std::filesystem::create_directory(folder / name);
+  ASSERT_EQ(run(sphere_job + "-o run_{realization}/rough.msh --realizations 2").exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder / "rough.report.json"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "run_1/rough.msh"));
+}
+
+TEST_F(CommandLine, MessagesHoldNoControlCharacters) {
+  const Outcome outcome = run("roughen $'no\nsuch\x1b[31mfile.msh' -o a.msh --rms 1 --length 1");
+  expect_failure(outcome, 2, "control characters");
+  EXPECT_EQ(outcome.err.find('\x1b'), std::string::npos);
+}
+
 TEST_F(CommandLine, WritesOverItsInput) {
   ASSERT_EQ(run(sphere_job + "-o rough.msh").exit_code, 0);
   ASSERT_EQ(run(sphere_job + "-o sphere.msh").exit_code, 0);
@@ -127,7 +162,7 @@ TEST_F(CommandLine, EveryOptionRefusesNonsenseWithCodeTwo) {
     if (std::is_same_v<Member, bool>)
       nonsense = {"=maybe"};
     else if (is_number)
-      nonsense = {" x", " -1e999", " 1..2", " ''", " nan"};
+      nonsense = {" x", " -1", " -1e999", " 1..2", " ''", " nan", " 0x10", " 1,"};
     else if (std::is_enum_v<Member> || name == "method")
       nonsense = {" nonsense", " ''"};
     else if (name == "group")
@@ -206,8 +241,9 @@ TEST_F(CommandLine, AnInterruptKeepsFinishedRealizationsOnly) {
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
   const std::size_t size = std::filesystem::file_size(folder / "r_0.msh");
   int n_meshes = 0;
+  EXPECT_TRUE(std::filesystem::exists(folder / "r_.report.json"));  // of the finished ones
   for (const std::string& name : folder.names()) {
-    if (name == "ball.msh" || name == "sphere.msh") continue;
+    if (name == "ball.msh" || name == "sphere.msh" || name == "r_.report.json") continue;
     ASSERT_TRUE(std::regex_match(name, std::regex("r_\\d+\\.msh"))) << name;
     const Mesh mesh = read_mesh(folder / name);  // whole
     EXPECT_EQ(mesh.n_nodes(), 162);

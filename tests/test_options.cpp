@@ -139,6 +139,10 @@ TEST(Options, CombinationsThatMakeNoSenseAreRefused) {
   EXPECT_TRUE(refused([](auto& o) { o.realizations = 0; }));
   EXPECT_TRUE(refused([](auto& o) { o.realizations = 2, o.output = "rough.msh"; }));
   EXPECT_TRUE(refused([](auto& o) { o.first = std::numeric_limits<std::uint64_t>::max(); }));
+  EXPECT_TRUE(refused([](auto& o) { o.output = "r_{realization:4}.msh"; }));
+  EXPECT_TRUE(refused([](auto& o) { o.output = "r.msh", o.report = "./x/../r.msh"; }));
+  EXPECT_TRUE(
+      refused([](auto& o) { o.input = "/a.msh", o.output = "b.msh", o.report = "/a.msh"; }));
   EXPECT_FALSE(refused([](auto& o) { o.realizations = 2, o.output = "r_{realization}.msh"; }));
 }
 
@@ -155,4 +159,6 @@ TEST(Options, OutputNamesFollowTheTemplate) {
   EXPECT_EQ(report_of("rough_{realization}.msh"), "rough_.report.json");
   EXPECT_EQ(report_of("out/rough.msh"), "out/rough.report.json");
   EXPECT_EQ(report_of("a{realization:04}b.vtu"), "ab.report.json");
+  EXPECT_EQ(report_of("runs/run_{realization}/rough.msh"), "runs/rough.report.json");
+  EXPECT_EQ(report_of("{realization}/rough.msh"), "rough.report.json");
 }
