@@ -84,7 +84,7 @@ std::string described(const OptionText& text, const Member& member) {
   if constexpr (std::is_enum_v<Member>)
     return fmt::format("{}: {}; default {}", text.help, listed_choices<Member>(), name(member));
   else if constexpr (std::is_arithmetic_v<Member>)
-    return member == Member{} ? std::string(text.help)
+    return text.name == "rms" ? std::string(text.help)
                               : fmt::format("{}; default {}", text.help, member);
   else
     return std::string(text.help);
@@ -103,12 +103,19 @@ CLI::Option* add_option(CLI::App& app, const OptionText& text, Member& member) {
         described(text, member));
 }
 
+/// `--group --rms 2` forgot the name; without this the parser takes "--rms" for it.
+std::string refuse_option_as_value(const std::string& given) {
+  return given.starts_with("--") ? "needs a value, not " + given : "";
+}
+
 void add_options(CLI::App& app, RoughenOptions& options,
                  const std::vector<std::string_view>& only = {}) {
   for_each_option(options, [&](const OptionText& text, auto& member) {
     if (!only.empty() && std::find(only.begin(), only.end(), text.name) == only.end()) return;
     CLI::Option* option = add_option(app, text, member);
-    if (!text.value.empty()) option->type_name(std::string(text.value));
+    if (text.name != "input") option->type_name(std::string(text.value));
+    if (!std::is_same_v<std::decay_t<decltype(member)>, bool>)
+      option->check(refuse_option_as_value);
   });
 }
 
@@ -153,6 +160,19 @@ std::string one_line(std::string text) {
   return text;
 }
 
+/// Arguments that no option took: the first one that looks like an option is the culprit.
+[[noreturn]] void refuse_extras(const Parser& parser) {
+  const std::vector<std::string> extras = parser.app.remaining(true);
+  const auto option = std::find_if(extras.begin(), extras.end(),
+                                   [](const std::string& each) { return each.starts_with("-"); });
+  const bool has_verb = *parser.roughen || *parser.info;
+  const std::string verb = *parser.info ? "info" : "roughen";
+  throw InputError(fmt::format(
+      "{}: {}", option != extras.end() ? *option : extras.front(),
+      has_verb ? "unknown or too many; `roughmesh " + verb + " --help` lists the options"
+               : "unknown; the verbs are roughen and info"));
+}
+
 /// CLI11 takes its arguments last first.
 void parse(Parser& parser, std::vector<std::string> arguments) {
   std::reverse(arguments.begin(), arguments.end());
@@ -160,15 +180,11 @@ void parse(Parser& parser, std::vector<std::string> arguments) {
     parser.app.parse(std::move(arguments));
   } catch (const CLI::CallForHelp&) {
     throw;
+  } catch (const CLI::ExtrasError&) {
+    refuse_extras(parser);
   } catch (const CLI::ParseError& error) {
     throw InputError(one_line(error.what()) + "; `roughmesh --help` shows the usage");
   }
-}
-
-std::string help_text(const Parser& parser) {
-  if (*parser.roughen) return parser.roughen->help();
-  if (*parser.info) return parser.info->help();
-  return parser.app.help();
 }
 
 }  // namespace
@@ -179,7 +195,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   try {
     parse(first, arguments);
   } catch (const CLI::CallForHelp&) {
-    command.text = help_text(first);
+    command.text = first.app.help();
     return command;
   }
   if (first.show_version) return {Verb::version, {}, false, "roughmesh " + version() + "\n"};

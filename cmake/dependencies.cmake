@@ -18,5 +18,5 @@ target_link_libraries(roughmesh_private_dependencies INTERFACE
   TBB::tbb fmt::fmt nlohmann_json::nlohmann_json ${LAPACKE_LIBRARY} ${OPENBLAS_LIBRARY})
 
 # What a program that uses the installed static library has to link; cmake/roughmesh-config.cmake.in
-# finds the packages among them.
-set(roughmesh_installed_dependencies TBB::tbb fmt::fmt lapacke openblas)
+# finds them where that program is built.
+set(roughmesh_installed_dependencies TBB::tbb fmt::fmt roughmesh::lapacke roughmesh::openblas)

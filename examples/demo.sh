@@ -30,6 +30,6 @@ done
 
 echo
 echo "made:"
-for file in gold_sphere.msh rough_0.msh rough_1.msh rough_2.msh rough_0.vtu rough.report.json; do
+for file in gold_sphere.msh rough_0.msh rough_1.msh rough_2.msh rough_0.vtu rough_0.report.json rough.report.json; do
   echo "  $folder/$file"
 done

@@ -274,16 +274,30 @@ std::vector<std::string> Autocorrelation::citations() const {
   switch (family_) {
     case Family::gaussian:
     case Family::exponential:
-      return {"10.1088/0022-3727/22/9/001"};  // Ogilvy and Foster 1989
+      return {
+          "Ogilvy, Foster (1989), Rough surfaces: gaussian or exponential statistics?, "
+          "doi:10.1088/0022-3727/22/9/001"};
     case Family::matern:
-      return {"10.1093/biomet/93.4.989"};  // Guttorp and Gneiting 2006
+      return {
+          "Guttorp, Gneiting (2006), Studies in the history of probability and statistics XLIX: on "
+          "the "
+          "Matern correlation family, doi:10.1093/biomet/93.4.989"};
     case Family::self_affine:
-      return {"10.1103/PhysRevB.48.14472"};  // Palasantzas 1993
+      return {
+          "Palasantzas (1993), Roughness spectrum and surface width of self-affine fractal "
+          "surfaces "
+          "via the K-correlation model, doi:10.1103/PhysRevB.48.14472"};
     case Family::stretched:
-      return {"10.1103/PhysRevB.38.2297",            // Sinha et al. 1988
-              "10.1090/S0002-9947-1938-1501980-0"};  // Schoenberg 1938
+      return {
+          "Sinha, Sirota, Garoff, Stanley (1988), X-ray and neutron scattering from rough "
+          "surfaces, "
+          "doi:10.1103/PhysRevB.38.2297",
+          "Schoenberg (1938), Metric spaces and positive definite functions, "
+          "doi:10.1090/S0002-9947-1938-1501980-0"};
     case Family::rational_quadratic:
-      return {"10.7551/mitpress/3206.001.0001"};  // Rasmussen and Williams 2006
+      return {
+          "Rasmussen, Williams (2006), Gaussian processes for machine learning, "
+          "doi:10.7551/mitpress/3206.001.0001"};
   }
   return {};
 }

@@ -20,7 +20,7 @@ inline void require_first_order(const ElementType& type, Tag element) {
   if (type.order == 1) return;
   throw InputError(
       fmt::format("element {} is a {}: elements of higher order cannot move yet; make the mesh "
-                  "linear with gmsh -order 1",
+                  "linear by meshing its geometry again with gmsh -order 1",
                   element, name(type)));
 }
 

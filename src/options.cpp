@@ -126,9 +126,10 @@ void check_report(const RoughenOptions& o) {
 void check_ensemble(const RoughenOptions& o) {
   const std::string rest =
       replace_placeholders(o.output, [](std::size_t) { return std::string(); });
-  if (rest.find("{realization") != std::string::npos)
+  if (rest.find_first_of("{}") != std::string::npos)
     throw InputError(fmt::format(
-        "OUTPUT: {}; write {{realization}}, or {{realization:04}} for leading zeros", o.output));
+        "OUTPUT: {}; braces hold {{realization}}, or {{realization:04}} for leading zeros",
+        o.output));
   require(o.realizations >= 1, "--realizations", static_cast<double>(o.realizations), "at least 1");
   if (o.first > std::numeric_limits<std::uint64_t>::max() - o.realizations)
     throw InputError(

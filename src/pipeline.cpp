@@ -38,7 +38,7 @@ void refuse_moving_links(const Mesh& mesh, const Surface& surface) {
       if (moves[slave] || moves[master])
         throw InputError(fmt::format(
             "periodic link of entity {} to {}: node {} on it would move; periodic roughness is "
-            "not supported yet, leave out the linked nodes or the $Periodic section",
+            "not supported yet, choose a group without linked nodes",
             link.entity, link.master_entity, mesh.node_tags[slave]));
 }
 
@@ -54,6 +54,9 @@ Report begin_report(const Mesh& mesh, const RoughenOptions& options) {
 std::vector<std::string> cited_works(const FieldSampler& sampler, const Autocorrelation& rho) {
   std::vector<std::string> works = sampler.citations();
   for (std::string& work : rho.citations()) works.push_back(std::move(work));
+  works.emplace_back(
+      "Max (1999), Weights for computing vertex normals from facet normals, "
+      "doi:10.1080/10867651.1999.10487501");
   return works;
 }
 
@@ -85,7 +88,18 @@ std::vector<Vec3> differences(std::span<const Vec3> after, std::span<const Vec3>
   return result;
 }
 
-void refuse_invalid(const RoughMesh& rough, Report& report) {
+/// What helps against inverted elements; a finer mesh does not, it makes them smaller.
+std::string remedy(const Autocorrelation& rho, const VolumeMover& mover) {
+  std::string text = "lower --rms";
+  text += rho.slope_variance()
+              ? " or use a longer --length"
+              : " or take a smoother --acf (slopes of this one grow as the mesh is refined)";
+  if (mover.n_wall_nodes() > 0)
+    text += "; the rough surface ends on faces that stay, where elements invert first";
+  return text + "; --allow-invalid writes it all the same";
+}
+
+void refuse_invalid(const RoughMesh& rough, const std::string& remedy, Report& report) {
   if (rough.check.valid()) return;
   const Finding& worst = rough.check.findings.front();
   const std::string found = fmt::format(
@@ -94,10 +108,7 @@ void refuse_invalid(const RoughMesh& rough, Report& report) {
       "with scaled Jacobian {:.3g}",
       rough.realization, rough.check.inverted_elements, worst.element, worst.what, worst.place.x(),
       worst.place.y(), worst.place.z(), worst.value);
-  if (!report.request.allow_invalid)
-    throw CheckError(found +
-                     "; lower --rms, use a longer --length or a finer mesh there, or pass "
-                     "--allow-invalid");
+  if (!report.request.allow_invalid) throw CheckError(found + "; " + remedy);
   report.warnings.push_back(found + "; written because of --allow-invalid");
 }
 
@@ -168,7 +179,7 @@ Report roughen(const Mesh& mesh, const RoughenOptions& options, const Deliver& d
         timed(t.displace, [&] { return displace(surface, heights); });
     rough.mesh.nodes = timed(t.volume, [&] { return mover.move(displacements); });
     rough.check = timed(t.check, [&] { return check_mesh(mesh, rough.mesh.nodes); });
-    refuse_invalid(rough, report);
+    refuse_invalid(rough, remedy(rho, mover), report);
 
     rough.heights = at_nodes<double>(mesh, surface, heights, 0.0);
     rough.displacements = differences(rough.mesh.nodes, mesh.nodes);

@@ -200,8 +200,10 @@ void warn_of_coarse_mesh(const Resolution& resolution, std::vector<std::string>&
   else if (resolution.largest_edge > largest_edge_allowance * limit)
     warnings.push_back(fmt::format(
         "the mesh is coarse in places: its median edge {:.3g} is fine for the correlation length, "
-        "but its largest edge {:.3g} is above twice l/2.5 = {:.3g}; refine the surface there",
-        resolution.mesh_size, resolution.largest_edge, limit));
+        "but its largest edge {:.3g} is above {:.3g}, twice what the length l asks for (l/2.5); "
+        "refine "
+        "the surface there",
+        resolution.mesh_size, resolution.largest_edge, largest_edge_allowance * limit));
 }
 
 void warn_of_rough_spectrum(const Resolution& resolution, std::vector<std::string>& warnings) {

@@ -35,8 +35,16 @@ void warn_of_scale(Report& report, const Mesh& mesh, const Surface& surface) {
         "--rms {:g} is only {:.3g} spacings of the numbers the file can hold ({:.3g}): heights "
         "are rounded; use a file with more digits",
         rq, rq / spacing, spacing));
+  const double h = surface.mesh_size.median;
+  if (rq < 1e-6 * h)
+    report.warnings.push_back(
+        fmt::format("--rms {:g} is {:.1e} of the mesh size {:.3g}; check the unit", rq, rq / h, h));
   const double size = std::sqrt(surface.area);
   const double length = report.lengths.formula;
+  if (length < 1e-2 * h)
+    report.warnings.push_back(
+        fmt::format("correlation length {:g} is {:.1e} of the mesh size {:.3g}; check the unit",
+                    length, length / h, h));
   if (length > size)
     report.warnings.push_back(fmt::format(
         "correlation length {:g} is larger than the surface (square root of its area {:.3g}): it "
@@ -61,7 +69,8 @@ void warn_of_walls(Report& report, const VolumeMover& mover) {
   if (mover.n_wall_nodes() > 0)
     report.warnings.push_back(fmt::format(
         "{} nodes of the rough surface lie on faces that are not roughened; they move along the "
-        "normals of the rough surface",
+        "normals of the rough surface while the other nodes of those faces stay, so elements there "
+        "invert first",
         mover.n_wall_nodes()));
 }
 

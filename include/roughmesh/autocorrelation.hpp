@@ -72,7 +72,7 @@ class Autocorrelation {
   /// 1/length^2.
   std::optional<double> slope_variance() const;
 
-  /// DOIs of what the family rests on, for the report.
+  /// Works that the family rests on, for the report: authors, year, title, DOI.
   std::vector<std::string> citations() const;
 
  private:

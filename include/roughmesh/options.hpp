@@ -78,7 +78,7 @@ void for_each_option(Options& options, Visit&& visit) {
           "physical group to roughen, repeatable; default: the only surface group, or the whole "
           "boundary of a mesh without groups"},
       options.group);
-  visit(OptionText{"rms", "VALUE", "rms roughness Rq, in the length unit of the mesh"},
+  visit(OptionText{"rms", "VALUE", "rms roughness Rq, in the length unit of the mesh; required"},
         options.rms);
   visit(
       OptionText{
