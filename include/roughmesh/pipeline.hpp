@@ -29,12 +29,12 @@ struct RoughMesh {
 using Deliver = std::function<void(const RoughMesh& rough, Report& report)>;
 
 /// Makes options.realizations rough meshes, one after the other, and hands each to `deliver`; holds
-/// one at a time. `input`, `output` and `report` of the options are not used here.
+/// one at a time. `input`, `output` and `report` of the options are not used here. Sets the number
+/// of threads of the whole process while it runs: not for two callers at once.
 ///
 /// @throws InputError      options or mesh that cannot be roughened
 /// @throws CheckError      a realization with inverted elements, unless options.allow_invalid; it
-/// is not
-///                         delivered, earlier ones were
+///                         is not delivered, earlier ones were
 /// @throws NumericalError  a solver did not converge
 Report roughen(const Mesh& mesh, const RoughenOptions& options, const Deliver& deliver);
 
