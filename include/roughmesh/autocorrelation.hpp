@@ -53,9 +53,8 @@ struct EquivalentLengths {
 /// Formulas and sources: docs/math.md, eq. 4 to 9. Cheap to copy.
 class Autocorrelation {
  public:
-  /// @throws InputError  a parameter that is missing, does not belong to the family, is not finite
-  /// or
-  ///                     out of range; both or none of length and rolloff; a length definition that
+  /// @throws InputError  a parameter that is missing, foreign to the family, not finite or out of
+  ///                     range; both or none of length and rolloff; a length definition that
   ///                     does not exist for the family
   explicit Autocorrelation(const AutocorrelationOptions& options);
 

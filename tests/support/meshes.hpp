@@ -87,83 +87,92 @@ inline Mesh plate(int divisions, double length = 1.0) {
   return surface_mesh(std::move(nodes), std::move(faces));
 }
 
+/// Nodes of [-1, 1]^3, `divisions` cells along each side, numbered along x, then y, then z.
+struct CubeGrid {
+  int divisions;
+
+  Index node(int i, int j, int k) const {
+    const int row = divisions + 1;
+    return static_cast<Index>((k * row + j) * row + i);
+  }
+  Vec3 position(int i, int j, int k) const {
+    return Vec3(i, j, k) * (2.0 / divisions) - Vec3::Ones();
+  }
+};
+
+/// Inside the half-size cube the shells |x|_inf = const become spheres; outside they go back to
+/// cubes.
+inline Vec3 round_off(const Vec3& x) {
+  const double cube = x.lpNorm<Eigen::Infinity>();
+  if (cube == 0) return x;
+  const double blend = cube <= 0.5 ? 1.0 : (1.0 - cube) / 0.5;
+  return x * (1.0 + blend * (cube / x.norm() - 1.0));
+}
+
+/// Kuhn's six tetrahedra around the diagonal of a cell, so that neighbouring cells fit together.
+inline void add_kuhn_tetrahedra(const CubeGrid& grid, std::array<int, 3> cell,
+                                std::vector<Index>& cells) {
+  constexpr std::array<std::array<std::size_t, 3>, 6> orders = {
+      {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
+  for (std::size_t o = 0; o < orders.size(); ++o) {
+    std::array<int, 3> c = cell;
+    std::array<Index, 4> t = {grid.node(c[0], c[1], c[2])};
+    for (std::size_t s = 0; s < 3; ++s) {
+      ++c[orders[o][s]];
+      t[s + 1] = grid.node(c[0], c[1], c[2]);
+    }
+    if (o >= 3) std::swap(t[2], t[3]);  // odd permutations run the other way
+    cells.insert(cells.end(), t.begin(), t.end());
+  }
+}
+
+/// Two triangles for each square of the sides of the cube of cells [lo, hi)^3, outward.
+inline std::vector<Index> cube_sides(const CubeGrid& grid, int lo, int hi) {
+  std::vector<Index> faces;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const int level : {lo, hi})
+      for (int v = lo; v < hi; ++v)
+        for (int u = lo; u < hi; ++u) {
+          const auto corner = [&](int du, int dv) {
+            std::array<int, 3> c{};
+            c[axis] = level;
+            c[(axis + 1) % 3] = u + du;
+            c[(axis + 2) % 3] = v + dv;
+            return grid.node(c[0], c[1], c[2]);
+          };
+          const Index a = corner(0, 0), b = corner(1, 0), c = corner(1, 1), d = corner(0, 1);
+          if (level == hi)
+            faces.insert(faces.end(), {a, b, c, a, c, d});
+          else
+            faces.insert(faces.end(), {a, c, b, a, d, c});
+        }
+  return faces;
+}
+
 /// Ball of radius 1/2 ("inside", volume 1) in the box [-1, 1]^3 ("outside", volume 2), of
 /// tetrahedra; `divisions` cells along each side, a multiple of 4. The sphere between them is group
-/// "surface" (1), the six sides of the box are group "outer" (2). Both oriented outward.
+/// "surface" (1), the six sides of the box are group "outer" (2). Both oriented outward. Tetrahedra
+/// at the edges of the former cube become flat as the divisions grow.
 inline Mesh ball_in_box(int divisions) {
-  const int row = divisions + 1;
-  const auto node = [&](int i, int j, int k) {
-    return static_cast<Index>((k * row + j) * row + i);
-  };
+  const CubeGrid grid{divisions};
+  const int lo = divisions / 4, hi = divisions - divisions / 4;
   Mesh mesh;
+  std::vector<Index> inside, outside;
   for (int k = 0; k <= divisions; ++k)
     for (int j = 0; j <= divisions; ++j)
       for (int i = 0; i <= divisions; ++i) {
-        Vec3 x = Vec3(i, j, k) * (2.0 / divisions) - Vec3::Ones();
-        const double cube = x.lpNorm<Eigen::Infinity>();
-        // Inside the half-size cube the shells |x|_inf = const become spheres; outside they go back
-        // to cubes.
-        const double blend = cube <= 0.5 ? 1.0 : (1.0 - cube) / 0.5;
-        if (cube > 0) x *= 1.0 + blend * (cube / x.norm() - 1.0);
-        mesh.nodes.push_back(x);
+        mesh.nodes.push_back(round_off(grid.position(i, j, k)));
+        if (std::max({i, j, k}) == divisions) continue;
+        const bool is_inside = std::min({i, j, k}) >= lo && std::max({i, j, k}) < hi;
+        add_kuhn_tetrahedra(grid, {i, j, k}, is_inside ? inside : outside);
       }
-  std::vector<Index> inside, outside, sphere, box;
-  const int lo = divisions / 4, hi = divisions - divisions / 4;
-  const auto is_inside = [&](int i, int j, int k) {
-    return std::min({i, j, k}) >= lo && std::max({i, j, k}) < hi;
-  };
-  // Kuhn's six tetrahedra around the diagonal, so that neighbouring cells fit together.
-  const std::array<std::array<int, 3>, 6> orders = {
-      {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
-  for (int k = 0; k < divisions; ++k)
-    for (int j = 0; j < divisions; ++j)
-      for (int i = 0; i < divisions; ++i)
-        for (std::size_t o = 0; o < 6; ++o) {
-          std::array<int, 3> c = {i, j, k};
-          std::array<Index, 4> t{};
-          t[0] = node(i, j, k);
-          for (std::size_t s = 0; s < 3; ++s) {
-            ++c[static_cast<std::size_t>(orders[o][s])];
-            t[s + 1] = node(c[0], c[1], c[2]);
-          }
-          if (o >= 3) std::swap(t[2], t[3]);
-          auto& cells = is_inside(i, j, k) ? inside : outside;
-          cells.insert(cells.end(), t.begin(), t.end());
-        }
-  const auto add_square = [&](std::vector<Index>& faces, int axis, int level, int u, int v,
-                              bool up) {
-    const auto corner = [&](int du, int dv) {
-      std::array<int, 3> c{};
-      c[static_cast<std::size_t>(axis)] = level;
-      c[static_cast<std::size_t>((axis + 1) % 3)] = u + du;
-      c[static_cast<std::size_t>((axis + 2) % 3)] = v + dv;
-      return node(c[0], c[1], c[2]);
-    };
-    const Index a = corner(0, 0), b = corner(1, 0), c = corner(1, 1), d = corner(0, 1);
-    if (up)
-      faces.insert(faces.end(), {a, b, c, a, c, d});
-    else
-      faces.insert(faces.end(), {a, c, b, a, d, c});
-  };
-  for (int axis = 0; axis < 3; ++axis) {
-    for (int v = lo; v < hi; ++v)
-      for (int u = lo; u < hi; ++u) {
-        add_square(sphere, axis, lo, u, v, false);
-        add_square(sphere, axis, hi, u, v, true);
-      }
-    for (int v = 0; v < divisions; ++v)
-      for (int u = 0; u < divisions; ++u) {
-        add_square(box, axis, 0, u, v, false);
-        add_square(box, axis, divisions, u, v, true);
-      }
-  }
   Tag next = 1;
   const auto add = [&](ElementType type, Tag entity, std::vector<Index> nodes) {
     mesh.blocks.push_back(make_block(type, entity, {entity}, std::move(nodes), next));
     next += mesh.blocks.back().size();
   };
-  add(triangle_type, 1, std::move(sphere));
-  add(triangle_type, 2, std::move(box));
+  add(triangle_type, 1, cube_sides(grid, lo, hi));
+  add(triangle_type, 2, cube_sides(grid, 0, divisions));
   add(tetrahedron_type, 1, std::move(inside));
   add(tetrahedron_type, 2, std::move(outside));
   mesh.groups = {{2, 1, "surface"}, {2, 2, "outer"}, {3, 1, "inside"}, {3, 2, "outside"}};
