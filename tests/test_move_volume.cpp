@@ -14,6 +14,7 @@
 #include "harmonic.hpp"
 #include "parallel.hpp"
 #include "support/cells.hpp"
+#include "support/contact.hpp"
 #include "support/meshes.hpp"
 
 using namespace roughmesh;
@@ -227,19 +228,32 @@ TEST(MoveVolume, WallNodesAreCounted) {
 // Volumes on either side of a crack have nodes of their own at equal positions.
 TEST(MoveVolume, BothSidesOfACrackMoveTogether) {
   Mesh mesh = test::ball_in_box(8);
-  const Surface whole = ball(mesh);
-  const std::set<Index> on_surface(whole.nodes.begin(), whole.nodes.end());
-  for (Index& node : mesh.blocks[3].nodes) {
-    if (!on_surface.contains(node)) continue;
-    mesh.nodes.push_back(mesh.nodes[node]);
-    node = mesh.n_nodes() - 1;
-  }
-  test::number_nodes(mesh);
-  const Surface surface = ball(mesh);
+  test::detach(mesh, 3, 0);
+  const Surface surface = select_surface(mesh, {.groups = {"surface", "far side"}});
   const std::vector<Vec3> moved =
       VolumeMover(mesh, surface).move(displace(surface, bumps(surface, 0.03)));
   EXPECT_TRUE(check_mesh(mesh, moved).valid());
   EXPECT_NEAR(test::tetrahedron_volume(mesh, moved), 8, 1e-11);
+}
+
+// What makes an initial gap: the far side stays, and with it the whole body behind.
+TEST(MoveVolume, OneSideOfAContactMovesAlone) {
+  for (const ElementShape shape : volume_shapes) {
+    Mesh mesh = test::cell_box(shape, 4);
+    test::detach(mesh, 3, 0);
+    const ElementBlock &lower = mesh.blocks[2], &upper = mesh.blocks[3];
+    const Surface surface = select_surface(mesh, {.groups = {"middle"}});
+    const VolumeMover mover(mesh, surface);
+    EXPECT_EQ(mover.n_wall_nodes(), 16);  // the rim lies on the sides of the lower body
+    const std::vector<Vec3> moved = mover.move(constant(surface, Vec3(0.01, 0, -0.05)));
+    EXPECT_TRUE(check_mesh(mesh, moved).valid());
+    for (const Index node : upper.nodes) EXPECT_EQ(moved[node], mesh.nodes[node]);
+    for (const Index node : lower.nodes) {
+      const Vec3& x = mesh.nodes[node];
+      const bool is_inner = x.x() > 0 && x.x() < 1 && x.y() > 0 && x.y() < 1 && x.z() > 0;
+      EXPECT_EQ(moved[node].z() < x.z(), is_inner || x.z() == 0.5);
+    }
+  }
 }
 
 TEST(MoveVolume, ASurfaceMeshMovesItsSurfaceOnly) {

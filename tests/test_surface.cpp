@@ -9,6 +9,7 @@
 #include "roughmesh/surface.hpp"
 
 #include "support/cells.hpp"
+#include "support/contact.hpp"
 #include "support/meshes.hpp"
 
 using namespace roughmesh;
@@ -284,19 +285,32 @@ TEST(Surface, NodesAtEqualPositionsAreOnePoint) {
   EXPECT_EQ(soup.n_components, 1);
 }
 
-// The upper volume gets its own copies of the nodes in the plane z = 1/2; faces use the lower ones.
-TEST(Surface, BothSidesOfACrackBelongToTheSurface) {
+// Two bodies in contact in the plane z = 1/2, each with 25 nodes of its own there.
+TEST(Surface, OneSideOfAContactHasItsOwnNodesOnly) {
   Mesh mesh = test::cell_box(ElementShape::tetrahedron, 4);
-  const std::size_t n = mesh.nodes.size();
-  for (Index& node : mesh.blocks[3].nodes) {
-    if (mesh.nodes[node].z() != 0.5) continue;
-    mesh.nodes.push_back(mesh.nodes[node]);
-    node = mesh.n_nodes() - 1;
-  }
-  test::number_nodes(mesh);
-  const Surface surface = select_surface(mesh, {.groups = {"middle"}});
+  const Index n = mesh.n_nodes();
+  test::detach(mesh, 3, 0);
+  const Surface lower = select_surface(mesh, {.groups = {"middle"}});
+  EXPECT_EQ(lower.n_points(), 25);
+  EXPECT_EQ(lower.n_coincident_nodes, 25);
+  ASSERT_EQ(lower.nodes.size(), 25U);
+  EXPECT_LT(lower.nodes.back(), n);
+  EXPECT_EQ(mean_normal_z(lower), 1);
+
+  const Surface upper = select_surface(mesh, {.groups = {"far side"}});
+  EXPECT_EQ(upper.points, lower.points);
+  EXPECT_EQ(upper.n_coincident_nodes, 25);
+  EXPECT_GE(upper.nodes.front(), n);
+}
+
+TEST(Surface, BothSidesOfACrackAreOnePointEach) {
+  Mesh mesh = test::cell_box(ElementShape::tetrahedron, 4);
+  test::detach(mesh, 3, 0);
+  const Surface surface = select_surface(mesh, {.groups = {"middle", "far side"}});
   EXPECT_EQ(surface.n_points(), 25);
-  EXPECT_EQ(surface.nodes.size(), 25 + mesh.nodes.size() - n);
+  EXPECT_EQ(surface.nodes.size(), 50U);
+  EXPECT_EQ(surface.n_coincident_nodes, 0);
+  EXPECT_EQ(surface.n_duplicate_faces, 2 * 16);
   EXPECT_EQ(mean_normal_z(surface), 1);
 }
 
