@@ -199,13 +199,42 @@ TEST(Surface, ClosedPiecesLookOutward) {
   for (Index i = 0; i < surface.n_points(); ++i) EXPECT_EQ(flipped.normals[i], -surface.normals[i]);
 }
 
-TEST(Surface, AnOpenPieceKeepsTheOrientationOfItsFirstFace) {
-  Mesh mesh = test::plate(4);
-  test::turn_some_faces(mesh, 1);
-  EXPECT_EQ(mean_normal_z(select_surface(mesh)), 1);
-  test::turn_element(mesh.blocks[0], 0);
+TEST(Surface, AFreePieceKeepsTheOrientationOfMostOfItsArea) {
+  const Mesh mesh = test::plate(4);
+  for (Index e = 0; e < mesh.blocks[0].size(); ++e) {
+    Mesh other = mesh;
+    test::turn_element(other.blocks[0], e);
+    expect_same_surface(select_surface(mesh), select_surface(other));
+  }
+  EXPECT_EQ(mean_normal_z(select_surface(mesh, {.flip = true})), -1);
+  // One large square outweighs three triangles.
+  Mesh uneven = test::surface_mesh(
+      {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1.1, 0, 0}, {1.1, 1, 0}, {1.1, 0.5, 0}},
+      {1, 6, 4, 1, 2, 6, 2, 5, 6});
+  uneven.blocks.push_back(test::make_block(test::quadrangle_type, 1, {1}, {0, 1, 2, 3}, 11));
+  EXPECT_EQ(mean_normal_z(select_surface(uneven)), 1);
+}
+
+TEST(Surface, OfTwoHalvesTheFirstFaceInTheFileDecides) {
+  Mesh mesh = test::plate(3);  // sides of 1/3, so that areas are rounded
+  for (Index e = 0; e < 9; ++e) test::turn_element(mesh.blocks[0], 2 * e);
   EXPECT_EQ(mean_normal_z(select_surface(mesh)), -1);
-  EXPECT_EQ(mean_normal_z(select_surface(mesh, {.flip = true})), 1);
+  for (Index e = 0; e < 18; ++e) test::turn_element(mesh.blocks[0], e);
+  EXPECT_EQ(mean_normal_z(select_surface(mesh)), 1);
+}
+
+TEST(Surface, AnOpenPieceLooksOutOfItsVolume) {
+  for (const ElementShape shape : {ElementShape::tetrahedron, ElementShape::hexahedron,
+                                   ElementShape::prism, ElementShape::pyramid}) {
+    const Mesh mesh = test::cell_box(shape, 4);
+    const Surface top = select_surface(mesh, {.groups = {"top"}});
+    EXPECT_EQ(mean_normal_z(top), 1);
+    Mesh other = mesh;
+    for (Index e = 0; e < other.blocks[1].size(); ++e) {  // more and more, in the end all of them
+      test::turn_element(other.blocks[1], e);
+      expect_same_surface(top, select_surface(other, {.groups = {"top"}}));
+    }
+  }
 }
 
 TEST(Surface, BetweenTwoVolumesItLooksOutOfTheLowerNumber) {
@@ -301,6 +330,7 @@ TEST(Surface, OneSideOfAContactHasItsOwnNodesOnly) {
   EXPECT_EQ(upper.points, lower.points);
   EXPECT_EQ(upper.n_coincident_nodes, 25);
   EXPECT_GE(upper.nodes.front(), n);
+  EXPECT_EQ(mean_normal_z(upper), -1);
 }
 
 TEST(Surface, BothSidesOfACrackAreOnePointEach) {

@@ -68,10 +68,12 @@ struct Surface {
 };
 
 /// Selects and orients the faces. Orientation is made consistent over each piece that is connected
-/// through edges of two faces. A closed piece is turned outward (positive enclosed volume); an open
-/// piece between two volumes points out of the one with the lower entity number; any other open
-/// piece keeps the orientation of its first face in the file. `flip` turns the result. Normals use
-/// the weights of N. Max (1999), J. Graphics Tools 4(2):1-6, doi:10.1080/10867651.1999.10487501.
+/// through edges of two faces. A closed piece is turned outward (positive enclosed volume). An open
+/// piece points out of the volume it bounds, between two volumes out of the one with the lower
+/// entity number; if its faces disagree, most of them decide. Any other open piece keeps the
+/// orientation that most of its area has in the file; of two halves, that of its first face there.
+/// `flip` turns the result. Normals use the weights of N. Max (1999), J. Graphics Tools 4(2):1-6,
+/// doi:10.1080/10867651.1999.10487501.
 ///
 /// @throws InputError  unknown group, group of another dimension, no surface, several groups and
 ///                     none chosen (lists them), one-sided (unorientable) surface, elements of
