@@ -109,17 +109,28 @@ void keep_orientation_of_file(const WeldedPoints& welded, const Faces& faces, Pa
   turn_patches(turn, patches);
 }
 
+// A face of a patch at an edge.
+struct PatchSide {
+  Index patch;
+  int way;  // 1 along the edge, -1 against it
+};
+
 // A patch is closed if at every edge its faces run to and fro equally often.
 std::vector<std::uint8_t> closed_patches(const EdgeTable& edges, const Patches& patches) {
   std::vector<std::uint8_t> closed(static_cast<std::size_t>(patches.n), 1);
+  std::vector<PatchSide> sides;
   for (Index e = 0; e < edges.size(); ++e) {
-    const auto sides = edges.edge(e);
-    for (const Side& side : sides) {
-      const Index patch = patches.of_face[side.face];
+    sides.clear();
+    for (const Side& side : edges.edge(e)) {
+      const bool against = side.forward == (patches.turned[side.face] != 0);
+      sides.push_back({patches.of_face[side.face], against ? -1 : 1});
+    }
+    std::sort(sides.begin(), sides.end(),
+              [](const PatchSide& a, const PatchSide& b) { return a.patch < b.patch; });
+    for (auto side = sides.begin(); side != sides.end();) {
+      const Index patch = side->patch;
       int balance = 0;
-      for (const Side& other : sides)
-        if (patches.of_face[other.face] == patch)
-          balance += other.forward == (patches.turned[other.face] != 0) ? -1 : 1;
+      for (; side != sides.end() && side->patch == patch; ++side) balance += side->way;
       if (balance != 0) closed[patch] = 0;
     }
   }

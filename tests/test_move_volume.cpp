@@ -256,6 +256,27 @@ TEST(MoveVolume, OneSideOfAContactMovesAlone) {
   }
 }
 
+// A node in 100,000 tetrahedra around an axis: time that grows with their square would be noticed.
+// Constants are solutions; gradients of 1e5 along the rim cancel to 1e-16 of that per tetrahedron.
+TEST(MoveVolume, ANodeOfManyElements) {
+  const Index n = 100'000;
+  std::vector<Vec3> nodes = {{0, 0, 0}, {0, 0, 1}};
+  std::vector<detail::Tetrahedron> fan;
+  for (Index i = 0; i < n; ++i) {
+    const double angle = 2 * std::numbers::pi * i / n;
+    nodes.emplace_back(std::cos(angle), std::sin(angle), 0);
+    fan.push_back({0, 2 + i, 2 + (i + 1) % n, 1});
+  }
+  detail::NodeRoles roles;
+  roles.unknown.assign(nodes.size(), -1);
+  roles.unknown[0] = roles.n_unknown++;
+  roles.given.assign(nodes.size(), -1);
+  for (std::size_t node = 1; node < nodes.size(); ++node) roles.given[node] = roles.n_given++;
+  const detail::HarmonicExtension extension(nodes, fan, roles);
+  const std::vector<Vec3> given(nodes.size() - 1, Vec3(1, 2, 3));
+  EXPECT_NEAR((extension.extend(given)[0] - given[0]).norm(), 0, 1e-9);
+}
+
 TEST(MoveVolume, ASurfaceMeshMovesItsSurfaceOnly) {
   Mesh mesh = test::plate(4);
   const std::vector<Index> all = mesh.blocks[0].nodes;

@@ -280,6 +280,24 @@ TEST(Surface, AJunctionOfThreePlatesIsAccepted) {
   EXPECT_EQ(surface.n_points(), 3 * (n + 1) * n + n + 1);
 }
 
+// 100,000 triangles on one edge, like the pages of a book: time that grows with their square would
+// be noticed.
+TEST(Surface, AFanOfManyFacesOnOneEdge) {
+  const int n = 100'000;
+  std::vector<Vec3> nodes = {{0, 0, 0}, {0, 0, 1}};
+  std::vector<Index> faces;
+  for (int i = 0; i < n; ++i) {
+    const double angle = i * pi / 2 / n;
+    nodes.emplace_back(std::cos(angle), std::sin(angle), 0.5);
+    faces.insert(faces.end(), {0, 1, i + 2});
+  }
+  const Surface surface = select_surface(test::surface_mesh(std::move(nodes), std::move(faces)));
+  EXPECT_EQ(surface.n_nonmanifold_edges, 1);
+  EXPECT_EQ(surface.n_border_edges, 2 * n);
+  EXPECT_EQ(surface.n_components, 1);
+  EXPECT_NEAR(surface.area, n / 2, 1e-6);  // each sum of n roundings of 1e-11 at most
+}
+
 // Two cubes that share one edge: four faces meet there, and yet each cube is closed.
 TEST(Surface, ClosedBodiesThatTouchInAnEdgeLookOutwardEach) {
   Mesh mesh =
