@@ -256,6 +256,27 @@ TEST(MoveVolume, OneSideOfAContactMovesAlone) {
   }
 }
 
+// Files list an element once per group that it is in.
+TEST(MoveVolume, TheBoundaryOfRepeatedElementsStays) {
+  for (const ElementShape shape : volume_shapes) {
+    Mesh mesh = test::cell_box(shape, 4);
+    ElementBlock again = mesh.blocks[3];
+    for (Index e = 0; shape == ElementShape::tetrahedron && e < again.size(); ++e)
+      test::turn_element(again, e);  // the same corners, in another order
+    mesh.blocks.push_back(again);
+    const Surface top = select_surface(mesh, {.groups = {"top"}});
+    const VolumeMover mover(mesh, top);
+    EXPECT_EQ(mover.n_wall_nodes(), 16);
+    const std::vector<Vec3> moved = mover.move(constant(top, Vec3(0, 0, -0.05)));
+    for (Index node = 0; node < mesh.n_nodes(); ++node) {
+      const Vec3& x = mesh.nodes[node];
+      const bool is_inner = x.x() > 0 && x.x() < 1 && x.y() > 0 && x.y() < 1 && x.z() > 0.5;
+      EXPECT_EQ(moved[node] != x, is_inner || x.z() == 1);
+    }
+    EXPECT_EQ(select_surface(test::without_faces(mesh)).n_border_edges, 0);
+  }
+}
+
 // A node in 100,000 tetrahedra around an axis: time that grows with their square would be noticed.
 // Constants are solutions; gradients of 1e5 along the rim cancel to 1e-16 of that per tetrahedron.
 TEST(MoveVolume, ANodeOfManyElements) {
