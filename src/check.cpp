@@ -148,6 +148,10 @@ struct Summary {
   double min_quality = 1;
   std::vector<Bad> worst;  // ascending, at most most_findings
 
+  void add_inverted(const Bad& bad) {
+    ++n_inverted;
+    worst.push_back(bad);
+  }
   void keep_worst() {
     std::stable_sort(worst.begin(), worst.end());
     if (worst.size() > most_findings) worst.resize(most_findings);
@@ -168,8 +172,7 @@ Summary summarize_range(const BlockView& view, std::size_t block, std::size_t be
     const ElementResult result = compare(view, element);
     summary.min_quality = std::min(summary.min_quality, result.quality);
     if (!result.inverted) continue;
-    ++summary.n_inverted;
-    summary.worst.push_back({result.quality, view.block.tags[i], block, element});
+    summary.add_inverted({result.quality, view.block.tags[i], block, element});
   }
   summary.keep_worst();
   return summary;
@@ -190,6 +193,35 @@ Summary summarize(const Mesh& mesh, std::span<const Vec3> moved) {
     for (const Summary& part : parts) total.add(part);
   }
   return total;
+}
+
+std::vector<std::uint8_t> volume_nodes(const Mesh& mesh) {
+  std::vector<std::uint8_t> in_volume(mesh.nodes.size(), 0);
+  for (const ElementBlock& block : mesh.blocks)
+    if (dimension(block.type.shape) == 3)
+      for (const Index node : block.nodes) in_volume[node] = 1;
+  return in_volume;
+}
+
+// Folded faces beside the volume. A face that is one of the volume's only has nodes of the volume,
+// and the elements there tell whether it is valid.
+Summary summarize_loose_faces(const Mesh& mesh, std::span<const Vec3> moved) {
+  Summary summary;
+  if (dimension(mesh) < 3) return summary;
+  const std::vector<std::uint8_t> in_volume = volume_nodes(mesh);
+  for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
+    const BlockView view{mesh.blocks[b], mesh.nodes, moved};
+    if (dimension(view.block.type.shape) != 2) continue;
+    for (Index e = 0; e < view.block.size(); ++e) {
+      const auto corners = view.corners(e);
+      if (std::all_of(corners.begin(), corners.end(), [&](Index n) { return in_volume[n]; }))
+        continue;
+      const ElementResult result = compare(view, e);
+      if (result.inverted) summary.add_inverted({result.quality, view.block.tags[e], b, e});
+    }
+  }
+  summary.keep_worst();
+  return summary;
 }
 
 Finding make_finding(const BlockView& view, const Bad& bad) {
@@ -218,7 +250,8 @@ double min_quality(const Mesh& mesh) { return summarize(mesh, mesh.nodes).min_qu
 
 MeshCheck check_mesh(const Mesh& mesh, std::span<const Vec3> moved) {
   check_positions(mesh, moved);
-  const Summary summary = summarize(mesh, moved);
+  Summary summary = summarize(mesh, moved);
+  summary.add(summarize_loose_faces(mesh, moved));
   MeshCheck check{summary.n_inverted, summary.min_quality, {}};
   for (const Bad& bad : summary.worst)
     check.findings.push_back(make_finding({mesh.blocks[bad.block], mesh.nodes, moved}, bad));

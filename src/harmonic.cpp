@@ -88,29 +88,52 @@ Adjacency make_adjacency(std::span<const Tetrahedron> tetrahedra, const NodeRole
 }
 
 struct Entry {
-  Index column;
-  double value;
+  Index column = 0;
+  double value = 0;
 };
 
-// A row under construction: some fifteen columns, where a search from the start beats any index.
+// A row under construction: some fifteen columns, where a search from the start beats any index. A
+// hub with very many neighbours collects what comes after the first ones, to be merged in the end.
 class Row {
  public:
   void clear() { entries_.clear(); }
   void add(Index column, double value) {
-    const auto at = std::find_if(entries_.begin(), entries_.end(),
-                                 [&](const Entry& e) { return e.column == column; });
+    const auto at = is_long() ? entries_.end()
+                              : std::find_if(entries_.begin(), entries_.end(),
+                                             [&](const Entry& e) { return e.column == column; });
     if (at == entries_.end())
       entries_.push_back({column, value});
     else
       at->value += value;
   }
   std::span<const Entry> sorted() {
-    std::sort(entries_.begin(), entries_.end(),
-              [](const Entry& a, const Entry& b) { return a.column < b.column; });
+    if (is_long()) {
+      merge();
+    } else {
+      std::sort(entries_.begin(), entries_.end(), by_column);
+    }
     return entries_;
   }
 
  private:
+  static constexpr std::size_t most_searched = 64;
+
+  static bool by_column(const Entry& a, const Entry& b) { return a.column < b.column; }
+  bool is_long() const { return entries_.size() >= most_searched; }
+
+  // Stable, so that the values of a column are added in the order in which they came.
+  void merge() {
+    std::stable_sort(entries_.begin(), entries_.end(), by_column);
+    std::size_t last = 0;
+    for (std::size_t i = 1; i < entries_.size(); ++i) {
+      if (entries_[i].column == entries_[last].column)
+        entries_[last].value += entries_[i].value;
+      else
+        entries_[++last] = entries_[i];
+    }
+    entries_.resize(last + 1);
+  }
+
   std::vector<Entry> entries_;
 };
 

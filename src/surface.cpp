@@ -22,6 +22,7 @@ void check_options(const SurfaceOptions& options) {
 }
 
 void fill_nodes(const detail::WeldedPoints& welded, Surface& surface) {
+  surface.n_coincident_nodes = welded.n_coincident_nodes;
   for (std::size_t node = 0; node < welded.point_of_node.size(); ++node) {
     if (welded.point_of_node[node] < 0) continue;
     surface.nodes.push_back(static_cast<Index>(node));

@@ -2,6 +2,7 @@
 #include "surface_orientation.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <numeric>
 #include <optional>
@@ -78,30 +79,58 @@ void turn_patches(const std::vector<std::uint8_t>& turn, Patches& patches) {
     patches.turned[face] ^= turn[patches.of_face[face]];
 }
 
-// Each patch as its first face in the file has it.
-void keep_first_in_file(const Faces& faces, Patches& patches) {
-  std::vector<Index> first(static_cast<std::size_t>(patches.n), -1);
-  for (Index face = 0; face < faces.size(); ++face) {
-    Index& best = first[patches.of_face[face]];
-    if (best < 0 || faces.file_order[face] < faces.file_order[best]) best = face;
+// How a patch lies in the file.
+struct FileOrientation {
+  double area = 0;
+  double as_given = 0;  // area that is not turned, minus area that is
+  Index first = -1;     // face
+
+  bool is_turned(const Patches& patches) const {
+    constexpr double tie = 1e-9;  // halves of equal area, with the round-off of their sums
+    return std::abs(as_given) > tie * area ? as_given < 0 : patches.turned[first] != 0;
   }
-  std::vector<std::uint8_t> turn(first.size());
-  for (std::size_t patch = 0; patch < first.size(); ++patch)
-    turn[patch] = patches.turned[first[patch]];
+};
+
+// Each patch as most of its area in the file has it: a few faces the wrong way round do not count,
+// wherever they stand in the file.
+void keep_orientation_of_file(const WeldedPoints& welded, const Faces& faces, Patches& patches) {
+  std::vector<FileOrientation> in_file(static_cast<std::size_t>(patches.n));
+  for (Index face = 0; face < faces.size(); ++face) {
+    FileOrientation& patch = in_file[patches.of_face[face]];
+    const double area = polygon_area(gather(faces.face(face), welded.points).span());
+    patch.area += area;
+    patch.as_given += patches.turned[face] ? -area : area;
+    if (patch.first < 0 || faces.file_order[face] < faces.file_order[patch.first])
+      patch.first = face;
+  }
+  std::vector<std::uint8_t> turn(in_file.size());
+  for (std::size_t patch = 0; patch < turn.size(); ++patch)
+    turn[patch] = in_file[patch].is_turned(patches);
   turn_patches(turn, patches);
 }
+
+// A face of a patch at an edge.
+struct PatchSide {
+  Index patch;
+  int way;  // 1 along the edge, -1 against it
+};
 
 // A patch is closed if at every edge its faces run to and fro equally often.
 std::vector<std::uint8_t> closed_patches(const EdgeTable& edges, const Patches& patches) {
   std::vector<std::uint8_t> closed(static_cast<std::size_t>(patches.n), 1);
+  std::vector<PatchSide> sides;
   for (Index e = 0; e < edges.size(); ++e) {
-    const auto sides = edges.edge(e);
-    for (const Side& side : sides) {
-      const Index patch = patches.of_face[side.face];
+    sides.clear();
+    for (const Side& side : edges.edge(e)) {
+      const bool against = side.forward == (patches.turned[side.face] != 0);
+      sides.push_back({patches.of_face[side.face], against ? -1 : 1});
+    }
+    std::sort(sides.begin(), sides.end(),
+              [](const PatchSide& a, const PatchSide& b) { return a.patch < b.patch; });
+    for (auto side = sides.begin(); side != sides.end();) {
+      const Index patch = side->patch;
       int balance = 0;
-      for (const Side& other : sides)
-        if (patches.of_face[other.face] == patch)
-          balance += other.forward == (patches.turned[other.face] != 0) ? -1 : 1;
+      for (; side != sides.end() && side->patch == patch; ++side) balance += side->way;
       if (balance != 0) closed[patch] = 0;
     }
   }
@@ -132,6 +161,14 @@ std::vector<double> patch_volumes(const WeldedPoints& welded, const Faces& faces
 // Entities of the volume elements on either side of a face, seen along its corners as given.
 struct Neighbours {
   std::optional<Tag> behind, ahead;
+
+  // 1 if the face looks where it should, -1 if it has to look the other way, 0 if there is no
+  // telling: out of the only volume, or of the lower-numbered of two.
+  int vote() const {
+    if (behind == ahead) return 0;
+    if (!behind || !ahead) return behind ? 1 : -1;
+    return *behind < *ahead ? 1 : -1;
+  }
 };
 
 void note_neighbours(const Mesh& mesh, const ElementBlock& block, Index element,
@@ -153,7 +190,7 @@ void note_neighbours(const Mesh& mesh, const ElementBlock& block, Index element,
   }
 }
 
-// How many more faces of each patch look out of the lower-numbered volume than into it.
+// How many more faces of each patch look where their volumes want them to than the other way.
 std::vector<std::int64_t> votes_of_volumes(const Mesh& mesh, const WeldedPoints& welded,
                                            const Faces& faces, const Patches& patches) {
   const FaceLookup lookup(faces.offsets, faces.corners);
@@ -163,10 +200,8 @@ std::vector<std::int64_t> votes_of_volumes(const Mesh& mesh, const WeldedPoints&
       note_neighbours(mesh, block, e, welded, lookup, faces, neighbours);
   std::vector<std::int64_t> votes(static_cast<std::size_t>(patches.n), 0);
   for (std::size_t face = 0; face < neighbours.size(); ++face) {
-    const auto& [behind, ahead] = neighbours[face];
-    if (!behind || !ahead || *behind == *ahead) continue;
-    const bool looks_out = (*behind < *ahead) != (patches.turned[face] != 0);
-    votes[patches.of_face[face]] += looks_out ? 1 : -1;
+    const int vote = neighbours[face].vote();
+    votes[patches.of_face[face]] += patches.turned[face] ? -vote : vote;
   }
   return votes;
 }
@@ -209,7 +244,7 @@ Index count_pieces(const EdgeTable& edges, const Patches& patches) {
 Index orient_faces(const Mesh& mesh, const WeldedPoints& welded, const EdgeTable& edges,
                    Faces& faces) {
   Patches patches = make_patches(welded, faces, edges);
-  keep_first_in_file(faces, patches);
+  keep_orientation_of_file(welded, faces, patches);
   look_outward(mesh, welded, faces, edges, patches);
   for (Index face = 0; face < faces.size(); ++face)
     if (patches.turned[face]) faces.turn(face);

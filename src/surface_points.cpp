@@ -35,12 +35,16 @@ struct Grid {
   }
 };
 
-std::vector<Index> distinct_nodes(const Mesh& mesh, std::span<const Index> face_nodes) {
+std::vector<std::uint8_t> used_nodes(const Mesh& mesh, std::span<const Index> face_nodes) {
   std::vector<std::uint8_t> used(mesh.nodes.size(), 0);
   for (const Index node : face_nodes) used[node] = 1;
+  return used;
+}
+
+std::vector<Index> distinct_nodes(const std::vector<std::uint8_t>& used) {
   std::vector<Index> nodes;
-  for (Index node = 0; node < mesh.n_nodes(); ++node)
-    if (used[node]) nodes.push_back(node);
+  for (std::size_t node = 0; node < used.size(); ++node)
+    if (used[node]) nodes.push_back(static_cast<Index>(node));
   return nodes;
 }
 
@@ -83,10 +87,34 @@ std::vector<PlacedNode> sorted_by_position(const Mesh& mesh, std::span<const Ind
   return placed;
 }
 
+// For every node of the mesh, the place of its cell in this ascending list or -1.
+std::vector<Index> find_cells(const Mesh& mesh, const Grid& grid, std::span<const Cell> cells) {
+  std::vector<Index> found(mesh.nodes.size(), -1);
+  constexpr std::size_t grain = 4096;
+  parallel_for(mesh.nodes.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t node = begin; node < end; ++node) {
+      if (!grid.reaches(mesh.nodes[node])) continue;
+      const Cell cell = grid.cell(mesh.nodes[node]);
+      const auto at = std::lower_bound(cells.begin(), cells.end(), cell);
+      if (at != cells.end() && *at == cell) found[node] = static_cast<Index>(at - cells.begin());
+    }
+  });
+  return found;
+}
+
+void leave_coincident_nodes(const std::vector<std::uint8_t>& used, WeldedPoints& welded) {
+  for (std::size_t node = 0; node < used.size(); ++node) {
+    if (used[node] || welded.point_of_node[node] < 0) continue;
+    welded.point_of_node[node] = -1;
+    ++welded.n_coincident_nodes;
+  }
+}
+
 }  // namespace
 
 WeldedPoints weld_points(const Mesh& mesh, std::span<const Index> face_nodes) {
-  const std::vector<Index> nodes = distinct_nodes(mesh, face_nodes);
+  const std::vector<std::uint8_t> used = used_nodes(mesh, face_nodes);
+  const std::vector<Index> nodes = distinct_nodes(used);
   const Grid grid = make_grid(mesh, nodes);
   WeldedPoints welded;
   std::vector<Cell> cells;
@@ -95,17 +123,8 @@ WeldedPoints weld_points(const Mesh& mesh, std::span<const Index> face_nodes) {
     cells.push_back(placed.cell);
     welded.points.push_back(mesh.nodes[placed.node]);
   }
-  welded.point_of_node.assign(mesh.nodes.size(), -1);
-  constexpr std::size_t grain = 4096;
-  parallel_for(mesh.nodes.size(), grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t node = begin; node < end; ++node) {
-      if (!grid.reaches(mesh.nodes[node])) continue;
-      const Cell cell = grid.cell(mesh.nodes[node]);
-      const auto at = std::lower_bound(cells.begin(), cells.end(), cell);
-      if (at != cells.end() && *at == cell)
-        welded.point_of_node[node] = static_cast<Index>(at - cells.begin());
-    }
-  });
+  welded.point_of_node = find_cells(mesh, grid, cells);
+  leave_coincident_nodes(used, welded);
   return welded;
 }
 

@@ -12,10 +12,11 @@ namespace roughmesh::detail {
 struct WeldedPoints {
   std::vector<Vec3> points;          ///< canonical order (docs/math.md, section "Points")
   std::vector<Index> point_of_node;  ///< for every node of the mesh, its point or -1
+  Index n_coincident_nodes = 0;      ///< nodes at the positions of points that are on none
 };
 
-/// Points of the nodes that occur in `face_nodes`. Other nodes of the mesh at the same positions,
-/// as on the far side of a crack, get their point too: they have to move along.
+/// Points of the nodes that occur in `face_nodes`; no other node is on a point. One at the same
+/// position belongs to something else, like a second body in contact, and is only counted.
 /// @throws InputError  a coordinate that is not finite, or all positions are one
 WeldedPoints weld_points(const Mesh& mesh, std::span<const Index> face_nodes);
 

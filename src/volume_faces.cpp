@@ -63,6 +63,19 @@ struct KeyedFace {
   FaceRef ref;
 };
 
+std::span<const Index> corners(const Mesh& mesh, const FaceRef& ref) {
+  const ElementBlock& block = mesh.blocks[ref.block];
+  return block.element(ref.element).first(static_cast<std::size_t>(n_corners(block.type.shape)));
+}
+
+// Do the faces belong to one element that the mesh lists twice, as files do for elements in several
+// groups?
+bool is_repetition(const Mesh& mesh, const FaceRef& a, const FaceRef& b) {
+  if (a.block == b.block && a.element == b.element) return false;
+  const auto of_a = corners(mesh, a), of_b = corners(mesh, b);
+  return std::is_permutation(of_a.begin(), of_a.end(), of_b.begin(), of_b.end());
+}
+
 void append_single_faces(const Mesh& mesh, std::span<const FaceRef> bucket,
                          std::vector<KeyedFace>& scratch, std::vector<VolumeFace>& out) {
   scratch.clear();
@@ -70,11 +83,13 @@ void append_single_faces(const Mesh& mesh, std::span<const FaceRef> bucket,
     scratch.push_back({face_key(resolve(mesh, ref).corners()), ref});
   std::sort(scratch.begin(), scratch.end(),
             [](const KeyedFace& a, const KeyedFace& b) { return a.key < b.key; });
-  for (std::size_t i = 0; i < scratch.size();) {
-    std::size_t end = i + 1;
-    while (end < scratch.size() && scratch[end].key == scratch[i].key) ++end;
-    if (end == i + 1) out.push_back(resolve(mesh, scratch[i].ref));
-    i = end;
+  for (auto first = scratch.begin(); first != scratch.end();) {
+    const auto end =
+        std::find_if(first, scratch.end(), [&](const KeyedFace& f) { return f.key != first->key; });
+    const bool of_one_element = std::all_of(
+        first + 1, end, [&](const KeyedFace& f) { return is_repetition(mesh, first->ref, f.ref); });
+    if (of_one_element) out.push_back(resolve(mesh, first->ref));
+    first = end;
   }
 }
 

@@ -23,7 +23,7 @@ struct VolumeFace {
 VolumeFace volume_face(const ElementBlock& block, Index element, std::size_t face);
 
 /// Faces that belong to exactly one volume element, by their nodes; in the order of their smallest
-/// node, then of their other nodes.
+/// node, then of their other nodes. Elements with the same corners are one.
 std::vector<VolumeFace> boundary_faces(const Mesh& mesh);
 
 }  // namespace roughmesh::detail

@@ -219,6 +219,25 @@ TEST(Check, OnlyTheLargestDimensionCounts) {
   EXPECT_EQ(min_quality(mesh), quality);
 }
 
+// A shell of two triangles that hangs on an edge of the volume: neither is a face of an element.
+TEST(Check, FacesBesideTheVolumeAreChecked) {
+  Mesh mesh = test::cell_box(ElementShape::tetrahedron, 2);
+  const Index a = mesh.n_nodes();
+  mesh.nodes.insert(mesh.nodes.end(), {{-0.5, 0, 0}, {-0.5, 0.5, 0}});
+  mesh.blocks.push_back(
+      test::make_block(test::triangle_type, 5, {}, {0, 3, a, 3, a + 1, a}, 901));  // 3: (0, 0.5, 0)
+  test::number_nodes(mesh);
+  std::vector<Vec3> moved = mesh.nodes;
+  EXPECT_TRUE(check_mesh(mesh, moved).valid());
+  moved[a] = Vec3(0.3, 0.3, 0);  // over the edge that both hang on
+  const MeshCheck check = check_mesh(mesh, moved);
+  EXPECT_EQ(check.inverted_elements, 1);
+  ASSERT_EQ(check.findings.size(), 1U);
+  EXPECT_EQ(check.findings[0].what, "folded triangle");
+  EXPECT_EQ(check.findings[0].element, 901);
+  EXPECT_EQ(check.min_quality, min_quality(mesh));  // of the volume, which did not move
+}
+
 TEST(Check, PositionsMustBeFiniteAndComplete) {
   const Mesh mesh = test::plate(2);
   std::vector<Vec3> moved = mesh.nodes;

@@ -1,34 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Geometry of a selected surface: points, orientation, normals, areas, edges.
 #include <cmath>
-#include <limits>
-#include <set>
 
 #include <gtest/gtest.h>
 
 #include "roughmesh/surface.hpp"
 
 #include "support/cells.hpp"
+#include "support/contact.hpp"
 #include "support/meshes.hpp"
+#include "support/same_surface.hpp"
 
 using namespace roughmesh;
 
 namespace {
 
 constexpr double pi = std::numbers::pi;
-
-// Everything that must not depend on the numbers and the order in the file.
-void expect_same_surface(const Surface& a, const Surface& b) {
-  EXPECT_EQ(a.points, b.points);
-  EXPECT_EQ(a.normals, b.normals);
-  EXPECT_EQ(a.areas, b.areas);
-  EXPECT_EQ(a.face_offsets, b.face_offsets);
-  EXPECT_EQ(a.face_points, b.face_points);
-  EXPECT_EQ(a.area, b.area);
-  EXPECT_EQ(a.mesh_size.min, b.mesh_size.min);
-  EXPECT_EQ(a.mesh_size.median, b.mesh_size.median);
-  EXPECT_EQ(a.mesh_size.max, b.mesh_size.max);
-}
 
 double mean_normal_z(const Surface& surface) {
   double sum = 0;
@@ -132,10 +119,10 @@ TEST(Surface, DoesNotDependOnNumbersOrderOrOrientationOfTheFile) {
     const Surface surface = select_surface(mesh, {.groups = {"surface"}});
     Mesh other = test::shuffled(mesh, 1);
     test::turn_some_faces(other, 2);
-    expect_same_surface(surface, select_surface(other, {.groups = {"surface"}}));
+    test::expect_same_surface(surface, select_surface(other, {.groups = {"surface"}}));
   }
   const Mesh box = test::without_faces(test::cell_box(ElementShape::hexahedron, 4));
-  expect_same_surface(select_surface(box), select_surface(test::shuffled(box, 3)));
+  test::expect_same_surface(select_surface(box), select_surface(test::shuffled(box, 3)));
 }
 
 TEST(Surface, EveryNodeKnowsItsPoint) {
@@ -198,13 +185,42 @@ TEST(Surface, ClosedPiecesLookOutward) {
   for (Index i = 0; i < surface.n_points(); ++i) EXPECT_EQ(flipped.normals[i], -surface.normals[i]);
 }
 
-TEST(Surface, AnOpenPieceKeepsTheOrientationOfItsFirstFace) {
-  Mesh mesh = test::plate(4);
-  test::turn_some_faces(mesh, 1);
-  EXPECT_EQ(mean_normal_z(select_surface(mesh)), 1);
-  test::turn_element(mesh.blocks[0], 0);
+TEST(Surface, AFreePieceKeepsTheOrientationOfMostOfItsArea) {
+  const Mesh mesh = test::plate(4);
+  for (Index e = 0; e < mesh.blocks[0].size(); ++e) {
+    Mesh other = mesh;
+    test::turn_element(other.blocks[0], e);
+    test::expect_same_surface(select_surface(mesh), select_surface(other));
+  }
+  EXPECT_EQ(mean_normal_z(select_surface(mesh, {.flip = true})), -1);
+  // One large square outweighs three triangles.
+  Mesh uneven = test::surface_mesh(
+      {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1.1, 0, 0}, {1.1, 1, 0}, {1.1, 0.5, 0}},
+      {1, 6, 4, 1, 2, 6, 2, 5, 6});
+  uneven.blocks.push_back(test::make_block(test::quadrangle_type, 1, {1}, {0, 1, 2, 3}, 11));
+  EXPECT_EQ(mean_normal_z(select_surface(uneven)), 1);
+}
+
+TEST(Surface, OfTwoHalvesTheFirstFaceInTheFileDecides) {
+  Mesh mesh = test::plate(3);  // sides of 1/3, so that areas are rounded
+  for (Index e = 0; e < 9; ++e) test::turn_element(mesh.blocks[0], 2 * e);
   EXPECT_EQ(mean_normal_z(select_surface(mesh)), -1);
-  EXPECT_EQ(mean_normal_z(select_surface(mesh, {.flip = true})), 1);
+  for (Index e = 0; e < 18; ++e) test::turn_element(mesh.blocks[0], e);
+  EXPECT_EQ(mean_normal_z(select_surface(mesh)), 1);
+}
+
+TEST(Surface, AnOpenPieceLooksOutOfItsVolume) {
+  for (const ElementShape shape : {ElementShape::tetrahedron, ElementShape::hexahedron,
+                                   ElementShape::prism, ElementShape::pyramid}) {
+    const Mesh mesh = test::cell_box(shape, 4);
+    const Surface top = select_surface(mesh, {.groups = {"top"}});
+    EXPECT_EQ(mean_normal_z(top), 1);
+    Mesh other = mesh;
+    for (Index e = 0; e < other.blocks[1].size(); ++e) {  // more and more, in the end all of them
+      test::turn_element(other.blocks[1], e);
+      test::expect_same_surface(top, select_surface(other, {.groups = {"top"}}));
+    }
+  }
 }
 
 TEST(Surface, BetweenTwoVolumesItLooksOutOfTheLowerNumber) {
@@ -250,6 +266,24 @@ TEST(Surface, AJunctionOfThreePlatesIsAccepted) {
   EXPECT_EQ(surface.n_points(), 3 * (n + 1) * n + n + 1);
 }
 
+// 100,000 triangles on one edge, like the pages of a book: time that grows with their square would
+// be noticed.
+TEST(Surface, AFanOfManyFacesOnOneEdge) {
+  const int n = 100'000;
+  std::vector<Vec3> nodes = {{0, 0, 0}, {0, 0, 1}};
+  std::vector<Index> faces;
+  for (int i = 0; i < n; ++i) {
+    const double angle = i * pi / 2 / n;
+    nodes.emplace_back(std::cos(angle), std::sin(angle), 0.5);
+    faces.insert(faces.end(), {0, 1, i + 2});
+  }
+  const Surface surface = select_surface(test::surface_mesh(std::move(nodes), std::move(faces)));
+  EXPECT_EQ(surface.n_nonmanifold_edges, 1);
+  EXPECT_EQ(surface.n_border_edges, 2 * n);
+  EXPECT_EQ(surface.n_components, 1);
+  EXPECT_NEAR(surface.area, n / 2, 1e-6);  // each sum of n roundings of 1e-11 at most
+}
+
 // Two cubes that share one edge: four faces meet there, and yet each cube is closed.
 TEST(Surface, ClosedBodiesThatTouchInAnEdgeLookOutwardEach) {
   Mesh mesh =
@@ -278,25 +312,39 @@ TEST(Surface, TheWallOfACavityIsAPieceOfItsOwn) {
 TEST(Surface, NodesAtEqualPositionsAreOnePoint) {
   const Mesh mesh = test::icosphere(2);
   const Surface whole = select_surface(mesh), soup = select_surface(triangle_soup(mesh));
-  expect_same_surface(whole, soup);
+  test::expect_same_surface(whole, soup);
   EXPECT_EQ(soup.nodes.size(), 3 * mesh.blocks[0].tags.size());
   EXPECT_EQ(soup.n_border_edges, 0);
   EXPECT_EQ(soup.n_components, 1);
 }
 
-// The upper volume gets its own copies of the nodes in the plane z = 1/2; faces use the lower ones.
-TEST(Surface, BothSidesOfACrackBelongToTheSurface) {
+// Two bodies in contact in the plane z = 1/2, each with 25 nodes of its own there.
+TEST(Surface, OneSideOfAContactHasItsOwnNodesOnly) {
   Mesh mesh = test::cell_box(ElementShape::tetrahedron, 4);
-  const std::size_t n = mesh.nodes.size();
-  for (Index& node : mesh.blocks[3].nodes) {
-    if (mesh.nodes[node].z() != 0.5) continue;
-    mesh.nodes.push_back(mesh.nodes[node]);
-    node = mesh.n_nodes() - 1;
-  }
-  test::number_nodes(mesh);
-  const Surface surface = select_surface(mesh, {.groups = {"middle"}});
+  const Index n = mesh.n_nodes();
+  test::detach(mesh, 3, 0);
+  const Surface lower = select_surface(mesh, {.groups = {"middle"}});
+  EXPECT_EQ(lower.n_points(), 25);
+  EXPECT_EQ(lower.n_coincident_nodes, 25);
+  ASSERT_EQ(lower.nodes.size(), 25U);
+  EXPECT_LT(lower.nodes.back(), n);
+  EXPECT_EQ(mean_normal_z(lower), 1);
+
+  const Surface upper = select_surface(mesh, {.groups = {"far side"}});
+  EXPECT_EQ(upper.points, lower.points);
+  EXPECT_EQ(upper.n_coincident_nodes, 25);
+  EXPECT_GE(upper.nodes.front(), n);
+  EXPECT_EQ(mean_normal_z(upper), -1);
+}
+
+TEST(Surface, BothSidesOfACrackAreOnePointEach) {
+  Mesh mesh = test::cell_box(ElementShape::tetrahedron, 4);
+  test::detach(mesh, 3, 0);
+  const Surface surface = select_surface(mesh, {.groups = {"middle", "far side"}});
   EXPECT_EQ(surface.n_points(), 25);
-  EXPECT_EQ(surface.nodes.size(), 25 + mesh.nodes.size() - n);
+  EXPECT_EQ(surface.nodes.size(), 50U);
+  EXPECT_EQ(surface.n_coincident_nodes, 0);
+  EXPECT_EQ(surface.n_duplicate_faces, 2 * 16);
   EXPECT_EQ(mean_normal_z(surface), 1);
 }
 
@@ -378,110 +426,4 @@ TEST(Surface, AreaVectorIsTheRightHandNormal) {
   const std::vector<Vec3> square = test::ideal_corners(ElementShape::quadrangle);
   EXPECT_EQ(area_vector(square), Vec3(0, 0, 1));
   EXPECT_EQ(area_vector(std::span(square).first(3)), Vec3(0, 0, 0.5));
-}
-
-TEST(SurfaceGroups, ByNameByNumberAndOnce) {
-  const Mesh mesh = test::ball_in_box(4);
-  const Surface by_name = select_surface(mesh, {.groups = {"surface"}});
-  expect_same_surface(by_name, select_surface(mesh, {.groups = {"1"}}));
-  expect_same_surface(by_name, select_surface(mesh, {.groups = {"1", "surface", "1"}}));
-  EXPECT_EQ(by_name.groups, std::vector<std::string>{"surface"});
-  EXPECT_EQ(by_name.n_faces(), 12 * 4);
-  const Surface both = select_surface(mesh, {.groups = {"outer", "1"}});
-  EXPECT_EQ(both.n_faces(), 12 * 4 + 12 * 16);
-  EXPECT_EQ(both.groups, (std::vector<std::string>{"outer", "surface"}));
-  EXPECT_EQ(both.n_duplicate_faces, 0);
-}
-
-TEST(SurfaceGroups, ANameGoesBeforeANumber) {
-  Mesh mesh = test::ball_in_box(4);
-  mesh.groups[1].name = "1";  // group 2 is called 1
-  EXPECT_EQ(select_surface(mesh, {.groups = {"1"}}).n_faces(), 12 * 16);
-}
-
-TEST(SurfaceGroups, AllMeansEveryElementOfDimension2) {
-  const Mesh mesh = test::ball_in_box(4);
-  const Surface all = select_surface(mesh, {.groups = {"all"}});
-  EXPECT_EQ(all.n_faces(), 12 * 4 + 12 * 16);
-  EXPECT_EQ(all.n_components, 2);
-  const Surface derived = select_surface(test::without_faces(mesh), {.groups = {"all"}});
-  EXPECT_EQ(derived.n_faces(), 12 * 16);
-}
-
-TEST(SurfaceGroups, WithoutAChoice) {
-  Mesh mesh = test::ball_in_box(4);
-  const Surface box = select_surface(mesh, {.groups = {"outer"}});
-  const Surface derived = select_surface(test::without_faces(mesh));
-  expect_same_surface(box, derived);  // the boundary of the volume is the box
-  EXPECT_EQ(derived.groups, std::vector<std::string>{"boundary"});
-  EXPECT_EQ(std::set<Tag>(derived.face_tags.begin(), derived.face_tags.end()), std::set<Tag>{0});
-
-  std::erase_if(mesh.blocks, [](const ElementBlock& b) {
-    return b.physical_groups == std::vector<Tag>{2} && b.type == test::triangle_type;
-  });
-  EXPECT_EQ(select_surface(mesh).groups, std::vector<std::string>{"surface"});
-
-  Mesh bare = test::plate(2);
-  bare.groups.clear();
-  bare.blocks[0].physical_groups.clear();
-  EXPECT_EQ(select_surface(bare).n_faces(), 8);
-}
-
-TEST(SurfaceGroups, ErrorsNameTheGroupAndTheChoice) {
-  Mesh mesh = test::ball_in_box(4);
-  mesh.groups.push_back({2, 9, "empty"});
-  const auto message = [&](std::vector<std::string> groups) -> std::string {
-    try {
-      select_surface(mesh, {.groups = std::move(groups)});
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "accepted";
-  };
-  const std::string choice = "surface groups: surface (1), outer (2)";
-  EXPECT_EQ(message({"gold"}), "there is no physical group 'gold'; " + choice);
-  EXPECT_EQ(message({"surface", "7"}), "there is no physical group '7'; " + choice);
-  EXPECT_EQ(message({""}), "there is no physical group ''; " + choice);
-  EXPECT_EQ(message({"99999999999999999999"}),
-            "there is no physical group '99999999999999999999'; " + choice);
-  EXPECT_EQ(message({"inside"}), "physical group 'inside' has dimension 3, not 2; " + choice);
-  EXPECT_EQ(message({"empty"}), "physical group 'empty' has no element; " + choice);
-  EXPECT_EQ(message({}), "several groups could become rough, choose among them; " + choice);
-}
-
-TEST(SurfaceGroups, ALongListIsCutShort) {
-  Mesh mesh = test::plate(4);
-  const ElementBlock block = mesh.blocks[0];
-  mesh.groups.clear();
-  mesh.blocks.clear();
-  for (Tag group = 1; group <= 13; ++group) {
-    mesh.groups.push_back({2, group, ""});
-    mesh.blocks.push_back(block);
-    mesh.blocks.back().physical_groups = {group};
-  }
-  try {
-    select_surface(mesh);
-    FAIL() << "accepted";
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("9, 10 and 3 more"), std::string::npos);
-  }
-}
-
-TEST(SurfaceGroups, WhatIsNotASurfaceOfFirstOrderIsRefused) {
-  EXPECT_THROW(select_surface(Mesh{}), InputError);
-  Mesh lines = test::plate(1);
-  lines.blocks = {test::make_block({ElementShape::line, 1, 2}, 1, {}, {0, 1, 1, 2}, 1)};
-  EXPECT_THROW(select_surface(lines), InputError);
-  Mesh curved = test::plate(1);
-  curved.nodes.resize(6, Vec3::Zero());
-  curved.blocks = {
-      test::make_block({ElementShape::triangle, 2, 6}, 1, {1}, {0, 1, 2, 3, 4, 5}, 17)};
-  test::number_nodes(curved);
-  try {
-    select_surface(curved);
-    FAIL() << "accepted";
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("element 17"), std::string::npos);
-    EXPECT_NE(std::string(error.what()).find("-order 1"), std::string::npos);
-  }
 }

@@ -21,7 +21,7 @@ struct Finding {
 /// Result of comparing a moved mesh with the mesh it came from.
 struct MeshCheck {
   std::int64_t inverted_elements = 0;  ///< a corner Jacobian has another sign than before
-  double min_quality = 1;              ///< smallest scaled Jacobian, 1 for ideal elements, signed
+  double min_quality = 1;              ///< as of roughmesh::min_quality, negative where inverted
   std::vector<Finding> findings;       ///< the worst ones first, at most 10
 
   bool valid() const { return inverted_elements == 0; }
@@ -32,9 +32,11 @@ struct MeshCheck {
 /// elements.
 double min_quality(const Mesh& mesh);
 
-/// Elements of the largest dimension: each keeps the sign of every corner Jacobian that is not zero
-/// in `mesh`. In a surface mesh a face is folded when its normal has turned by more than 90
-/// degrees.
+/// An element is inverted, a face folded, unless every corner Jacobian that is not zero in `mesh`
+/// keeps its sign. The Jacobians of a face are seen along its normal, on the side where the normal
+/// was in `mesh`: all change sign where it turns by more than 90 degrees, one where a quadrangle
+/// becomes concave. Checked are elements of the largest dimension and, beside volume elements,
+/// faces with a node that no volume element has, like shells.
 /// @param moved  n_nodes positions, finite
 /// @throws NumericalError  a coordinate that is not finite
 MeshCheck check_mesh(const Mesh& mesh, std::span<const Vec3> moved);

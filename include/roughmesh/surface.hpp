@@ -27,16 +27,16 @@ struct MeshSize {
   double min = 0, median = 0, max = 0;
 };
 
-/// Triangles and quadrangles of the chosen groups, on *field points*. Nodes at equal positions are
-/// one point, and points stand in canonical order (docs/math.md, section "Points"): by position,
-/// whatever numbers and order the file has. All that is random or computed on the surface is
-/// indexed by point.
+/// Triangles and quadrangles of the chosen groups, on *field points*. Nodes of these faces at equal
+/// positions are one point, and points stand in canonical order (docs/math.md, section "Points"):
+/// by position, whatever numbers and order the file has. All that is random or computed on the
+/// surface is indexed by point.
 struct Surface {
   std::vector<Vec3> points;   ///< n positions, canonical order
   std::vector<Vec3> normals;  ///< n unit vectors, outward (docs/math.md, eq. 2)
   std::vector<double> areas;  ///< n node areas; they add up to `area`
-  /// m >= n mesh nodes at the positions of the points, ascending; also those that no selected face
-  /// uses, as on the far side of a crack.
+  /// m >= n mesh nodes of the selected faces, ascending. The two sides of a crack move together if
+  /// both are selected, and come apart if one is.
   std::vector<Index> nodes;
   std::vector<Index> point_of_node;  ///< m points, in the order of `nodes`
 
@@ -48,12 +48,14 @@ struct Surface {
       face_tags;  ///< n_faces element numbers in the file; 0 for a derived boundary face
 
   double area = 0;
-  MeshSize mesh_size;               ///< h is mesh_size.median
-  Index n_components = 0;           ///< pieces connected through edges
-  Index n_border_edges = 0;         ///< edges of one face; 0 for a closed surface
-  Index n_nonmanifold_edges = 0;    ///< edges of three and more faces
-  Index n_sharp_edges = 0;          ///< edges beyond SurfaceOptions::sharp_angle
-  Index n_duplicate_faces = 0;      ///< faces on the same points as an earlier one; counted once
+  MeshSize mesh_size;             ///< h is mesh_size.median
+  Index n_components = 0;         ///< pieces connected through edges
+  Index n_border_edges = 0;       ///< edges of one face; 0 for a closed surface
+  Index n_nonmanifold_edges = 0;  ///< edges of three and more faces
+  Index n_sharp_edges = 0;        ///< edges beyond SurfaceOptions::sharp_angle
+  Index n_duplicate_faces = 0;    ///< faces on the same points as an earlier one; counted once
+  /// Nodes at positions of points that no selected face uses; they stay.
+  Index n_coincident_nodes = 0;
   std::vector<std::string> groups;  ///< what was selected, for the report
 
   Index n_points() const { return static_cast<Index>(points.size()); }
@@ -66,10 +68,12 @@ struct Surface {
 };
 
 /// Selects and orients the faces. Orientation is made consistent over each piece that is connected
-/// through edges of two faces. A closed piece is turned outward (positive enclosed volume); an open
-/// piece between two volumes points out of the one with the lower entity number; any other open
-/// piece keeps the orientation of its first face in the file. `flip` turns the result. Normals use
-/// the weights of N. Max (1999), J. Graphics Tools 4(2):1-6, doi:10.1080/10867651.1999.10487501.
+/// through edges of two faces. A closed piece is turned outward (positive enclosed volume). An open
+/// piece points out of the volume it bounds, between two volumes out of the one with the lower
+/// entity number; if its faces disagree, most of them decide. Any other open piece keeps the
+/// orientation that most of its area has in the file; of two halves, that of its first face there.
+/// `flip` turns the result. Normals use the weights of N. Max (1999), J. Graphics Tools 4(2):1-6,
+/// doi:10.1080/10867651.1999.10487501.
 ///
 /// @throws InputError  unknown group, group of another dimension, no surface, several groups and
 ///                     none chosen (lists them), one-sided (unorientable) surface, elements of
