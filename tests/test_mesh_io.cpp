@@ -231,23 +231,6 @@ TEST(ReadMsh, TakesNodeNumbersUpToTheLargestInteger) {
   }
 }
 
-TEST(ReadMsh, KeepsElementsOfSeveralGroups) {
-  const test::TemporaryFolder folder;
-  const std::string head =
-      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n";
-  const Mesh mesh = read_text(folder, "a.msh",
-                              head +
-                                  "$Elements\n4\n1 2 2 5 1 1 2 3\n2 2 2 6 1 1 2 3\n"
-                                  "3 2 0 1 2 3\n4 2 1 5 1 2 3\n$EndElements");
-  ASSERT_EQ(mesh.blocks.size(), 4);
-  EXPECT_EQ(mesh.blocks[0].physical_groups, std::vector<Tag>{5});
-  EXPECT_EQ(mesh.blocks[1].physical_groups, std::vector<Tag>{6});
-  EXPECT_TRUE(mesh.blocks[2].physical_groups.empty());
-  EXPECT_EQ(mesh.blocks[3].physical_groups, std::vector<Tag>{5});
-  EXPECT_EQ(mesh.blocks[3].entity, 0);
-  EXPECT_EQ(mesh.groups.size(), 2);
-}
-
 TEST(ReadMsh, TakesSectionsInAnyOrderThatMakesSense) {
   const test::TemporaryFolder folder;
   const Mesh mesh = read_text(folder, "a.msh",
