@@ -28,11 +28,12 @@ struct PointField {
   std::vector<double> values;  ///< n_nodes * n_components, node by node
 };
 
-/// Writes the mesh. Where the extension of `path` asks for the format the mesh was read from, the
-/// bytes of the source are copied and only the numbers of nodes whose position changed are replaced
-/// (shortest decimals that read back exactly in ASCII files); facet normals of an STL are computed
-/// anew. Only `nodes` may differ from what read_mesh returned. ".vtu" is written from the arrays,
-/// with `fields`.
+/// Writes the mesh. Where only positions differ from what read_mesh returned, `path` has the
+/// extension of that file or of its format: the bytes of the source are copied and only the numbers
+/// of nodes whose position changed are replaced (shortest decimals that read back exactly in ASCII
+/// files); facet normals of an STL are computed anew. A mesh changed in any other way, or made in
+/// memory, is written anew from its arrays as MSH 4.1 text (".msh" only). ".vtu" is written from
+/// the arrays of any mesh, with `fields`.
 ///
 /// The file appears whole or not at all: it is written beside `path` and renamed. `path` may be the
 /// file the mesh was read from.
