@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "file_formats.hpp"
+#include "hash.hpp"
 #include "io_patch.hpp"
 
 namespace roughmesh {
@@ -196,6 +197,11 @@ void write_text(const std::string& text, const std::filesystem::path& path) {
   detail::OutputFile output(path);
   output.write(text);
   output.commit();
+}
+
+std::string checksum(const Mesh& mesh) {
+  if (mesh.source == nullptr) return {};
+  return fmt::format("{:016x}", detail::hash(mesh.source->file.view()));
 }
 
 double coordinate_spacing(const Mesh& mesh) {

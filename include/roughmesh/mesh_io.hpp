@@ -45,6 +45,11 @@ void write_mesh(const Mesh& mesh, const std::filesystem::path& path,
 /// Writes text the same way: whole or not at all. For reports beside meshes.
 void write_text(const std::string& text, const std::filesystem::path& path);
 
+/// 16 hexadecimal digits of the XXH3 hash (64 bits) of the bytes of the file the mesh was read
+/// from, as `xxhsum -H3` prints them; empty for a mesh made in memory. Finds mix-ups, not
+/// forgeries.
+std::string checksum(const Mesh& mesh);
+
 /// Largest distance between neighbouring numbers of the source's number format at the coordinates
 /// of the mesh: 2^-23 of a coordinate's binade for binary STL, 2^-52 otherwise. A length.
 double coordinate_spacing(const Mesh& mesh);
