@@ -199,6 +199,18 @@ void write_text(const std::string& text, const std::filesystem::path& path) {
   output.commit();
 }
 
+void check_output(const Mesh& mesh, const std::filesystem::path& path) {
+  detail::choose_writer(mesh, path);
+  check_text_output(path);
+}
+
+void check_text_output(const std::filesystem::path& path) {
+  // Whoever reads a pipe would take the end of the trial for the end of the file.
+  std::error_code ignored;
+  if (std::filesystem::is_fifo(path, ignored)) return;
+  const detail::OutputFile trial(path);
+}
+
 std::string checksum(const Mesh& mesh) {
   if (mesh.source == nullptr) return {};
   return fmt::format("{:016x}", detail::hash(mesh.source->file.view()));

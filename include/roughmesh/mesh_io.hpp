@@ -45,6 +45,16 @@ void write_mesh(const Mesh& mesh, const std::filesystem::path& path,
 /// Writes text the same way: whole or not at all. For reports beside meshes.
 void write_text(const std::string& text, const std::filesystem::path& path);
 
+/// Finds out before a long run whether write_mesh could write the mesh to `path` now, whatever its
+/// positions become; leaves nothing behind. A pipe is not tried.
+///
+/// @throws InputError  as write_mesh would: extension, elements that the format lacks, missing
+/// folder, no permission, a directory
+void check_output(const Mesh& mesh, const std::filesystem::path& path);
+
+/// Likewise for write_text.
+void check_text_output(const std::filesystem::path& path);
+
 /// 16 hexadecimal digits of the XXH3 hash (64 bits) of the bytes of the file the mesh was read
 /// from, as `xxhsum -H3` prints them; empty for a mesh made in memory. Finds mix-ups, not
 /// forgeries.
