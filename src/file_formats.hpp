@@ -25,7 +25,12 @@ bool is_text_stl(std::string_view bytes);    ///< begins with "solid"
 void write_patched(const Mesh& mesh, OutputFile& output);
 void write_patched_stl(const Mesh& mesh, OutputFile& output);
 
-/// From the arrays alone.
+/// Refuse a mesh that the format cannot hold.
+/// @throws InputError
+void check_for_msh4(const Mesh& mesh, const std::filesystem::path& path);
+void check_for_vtu(const Mesh& mesh, const std::filesystem::path& path);
+
+/// From the arrays alone, of a mesh that passed the check.
 void write_new_msh4(const Mesh& mesh, OutputFile& output);
 void write_vtu(const Mesh& mesh, const std::vector<PointField>& fields, OutputFile& output);
 

@@ -255,13 +255,11 @@ void read_sections(MshReader& reader) {
 Mesh read_msh(FileBytes file) {
   MshReader reader(file);
   read_sections(reader);
-  auto source = std::make_shared<MeshSource>();
-  if (!reader.is_text()) source->coordinates = NumberFormat::float64;
-  source->swap_bytes = reader.scanner.swap_bytes();
-  source->positions = reader.mesh.nodes;
-  source->offsets = std::move(reader.offsets);
-  source->file = std::move(file);
-  reader.mesh.source = std::move(source);
+  MeshSource source;
+  if (!reader.is_text()) source.coordinates = NumberFormat::float64;
+  source.swap_bytes = reader.scanner.swap_bytes();
+  source.offsets = std::move(reader.offsets);
+  attach_source(reader.mesh, std::move(source), std::move(file));
   return std::move(reader.mesh);
 }
 

@@ -58,6 +58,9 @@ struct MshReader {
 void read_msh2_nodes(MshReader& reader);
 void read_msh2_elements(MshReader& reader);
 void read_msh2_periodic(MshReader& reader);
+/// Elements with the same nodes in several blocks of one type and entity become one in the groups
+/// of all, in the order in which they first appear.
+void merge_copies_in_groups(std::vector<ElementBlock>& blocks);
 
 void read_msh4_entities(MshReader& reader);
 void read_msh4_partitioned_entities(MshReader& reader);

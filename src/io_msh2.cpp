@@ -138,6 +138,7 @@ void read_msh2_elements(MshReader& reader) {
   reader.scanner.count(n, 8, "elements");  // "1 15 0 1\n", or a number and a node in binary
   BlockFinder finder(reader.mesh.blocks);
   for (Tag n_left = n; n_left > 0;) n_left -= read_run(reader, finder, n_left);
+  merge_copies_in_groups(reader.mesh.blocks);
 }
 
 void read_msh2_periodic(MshReader& reader) {

@@ -64,15 +64,13 @@ Mesh read_ply2(FileBytes file) {
   const std::size_t n_nodes = scanner.count(n_announced, 6, "nodes");
   const std::size_t n_faces = scanner.count(n_faces_announced, 8, "faces");
   Mesh mesh;
-  auto source = std::make_shared<MeshSource>();
-  read_positions(scanner, n_nodes, mesh, *source);
+  MeshSource source;
+  read_positions(scanner, n_nodes, mesh, source);
   read_faces(scanner, n_faces, mesh);
   scanner.skip_space();
   if (!scanner.at_end()) scanner.fail("something stands behind the last face: a count is wrong");
-  source->positions = mesh.nodes;
-  source->file = std::move(file);
   mesh.format = MeshFormat::ply2;
-  mesh.source = std::move(source);
+  attach_source(mesh, std::move(source), std::move(file));
   return mesh;
 }
 

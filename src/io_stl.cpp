@@ -66,14 +66,12 @@ void add_facets(ElementBlock& block, const Soup& soup, std::size_t begin, std::s
 }
 
 void attach_source(Mesh& mesh, FileBytes file, Soup soup, NumberFormat format) {
-  auto source = std::make_shared<MeshSource>();
-  source->file = std::move(file);
-  source->coordinates = format;
-  source->swap_bytes = format == NumberFormat::float32 && std::endian::native == std::endian::big;
-  source->positions = mesh.nodes;
-  source->facets = std::move(soup.facets);
+  MeshSource source;
+  source.coordinates = format;
+  source.swap_bytes = format == NumberFormat::float32 && std::endian::native == std::endian::big;
+  source.facets = std::move(soup.facets);
   mesh.format = MeshFormat::stl;
-  mesh.source = std::move(source);
+  attach_source(mesh, std::move(source), std::move(file));
 }
 
 std::size_t n_binary_facets(std::string_view bytes) {

@@ -37,13 +37,9 @@ std::uint8_t vtk_cell_type(ElementShape shape) {
   return 0;
 }
 
-void check(const Mesh& mesh, const std::vector<PointField>& fields, const OutputFile& output) {
+void check_fields(const Mesh& mesh, const std::vector<PointField>& fields,
+                  const OutputFile& output) {
   const std::string file = output.path().string();
-  for (const ElementBlock& block : mesh.blocks)
-    if (block.type.order > 1)
-      throw InputError(
-          fmt::format("{}: a {} cannot be written to VTU, only elements of order 1; write .msh",
-                      file, name(block.type)));
   for (const PointField& field : fields)
     if (field.n_components < 1 ||
         field.values.size() != mesh.nodes.size() * static_cast<std::size_t>(field.n_components))
@@ -178,8 +174,16 @@ void write_arrays(OutputFile& output, const Mesh& mesh, const Sizes& n) {
 
 }  // namespace
 
+void check_for_vtu(const Mesh& mesh, const std::filesystem::path& path) {
+  for (const ElementBlock& block : mesh.blocks)
+    if (block.type.order > 1)
+      throw InputError(
+          fmt::format("{}: a {} cannot be written to VTU, only elements of order 1; write .msh",
+                      path.string(), name(block.type)));
+}
+
 void write_vtu(const Mesh& mesh, const std::vector<PointField>& fields, OutputFile& output) {
-  check(mesh, fields, output);
+  check_fields(mesh, fields, output);
   const Sizes n = sizes(mesh);
   output.write(header(n, fields));
   write_arrays(output, mesh, n);

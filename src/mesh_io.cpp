@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "file_formats.hpp"
+#include "hash.hpp"
 #include "io_patch.hpp"
 
 namespace roughmesh {
@@ -123,17 +124,34 @@ const char* usual_extension(MeshFormat format) {
   }
 }
 
-// Whatever a file was called when it was read it may be called when it is written.
-bool asks_for_source_format(const Mesh& mesh, const std::string& end) {
-  if (end == usual_extension(mesh.format)) return true;
-  return mesh.source != nullptr && end == extension(mesh.source->file.path);
+enum class Writer { patch, patch_stl, new_msh4, vtu };
+
+// A mesh that is no longer the one that was read, apart from positions, is as if made in memory.
+Writer writer_of_msh_or_source_format(const Mesh& mesh, const std::filesystem::path& path) {
+  const std::string end = extension(path);
+  const bool is_changed = mesh.source != nullptr && mesh.source->topology != topology_hash(mesh);
+  const bool is_new = mesh.source == nullptr || is_changed;
+  const char* const usual = usual_extension(is_new ? MeshFormat::none : mesh.format);
+  // Whatever a file was called when it was read it may be called when it is written.
+  if (end == usual || (!is_new && end == extension(mesh.source->file.path)))
+    return is_new                           ? Writer::new_msh4
+           : mesh.format == MeshFormat::stl ? Writer::patch_stl
+                                            : Writer::patch;
+  throw InputError(fmt::format(
+      "{}: extension \"{}\" is not written from this mesh{}; use {} or .vtu", path.string(), end,
+      is_changed ? ", of which more than positions was changed" : "", usual));
 }
 
-void check_writable(const Mesh& mesh, const std::filesystem::path& path) {
-  if (mesh.source != nullptr && mesh.source->positions.size() != mesh.nodes.size())
-    throw InputError(
-        fmt::format("{}: the mesh has {} nodes where its source has {}; move nodes only",
-                    path.string(), mesh.nodes.size(), mesh.source->positions.size()));
+// Refuses what cannot be written whatever the positions are.
+Writer choose_writer(const Mesh& mesh, const std::filesystem::path& path) {
+  const Writer writer =
+      extension(path) == ".vtu" ? Writer::vtu : writer_of_msh_or_source_format(mesh, path);
+  if (writer == Writer::vtu) check_for_vtu(mesh, path);
+  if (writer == Writer::new_msh4) check_for_msh4(mesh, path);
+  return writer;
+}
+
+void check_finite(const Mesh& mesh, const std::filesystem::path& path) {
   for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
     if (!mesh.nodes[i].allFinite())
       throw InputError(
@@ -141,12 +159,18 @@ void check_writable(const Mesh& mesh, const std::filesystem::path& path) {
                       path.string(), i < mesh.node_tags.size() ? mesh.node_tags[i] : Tag(i)));
 }
 
-void write_to(const Mesh& mesh, const std::vector<PointField>& fields, bool is_vtu,
-              OutputFile& output) {
-  if (is_vtu) return write_vtu(mesh, fields, output);
-  if (mesh.source == nullptr) return write_new_msh4(mesh, output);
-  if (mesh.format == MeshFormat::stl) return write_patched_stl(mesh, output);
-  write_patched(mesh, output);
+void write_with(Writer writer, const Mesh& mesh, const std::vector<PointField>& fields,
+                OutputFile& output) {
+  switch (writer) {
+    case Writer::patch:
+      return write_patched(mesh, output);
+    case Writer::patch_stl:
+      return write_patched_stl(mesh, output);
+    case Writer::new_msh4:
+      return write_new_msh4(mesh, output);
+    case Writer::vtu:
+      return write_vtu(mesh, fields, output);
+  }
 }
 
 }  // namespace
@@ -162,15 +186,10 @@ Mesh read_mesh(const std::filesystem::path& path) {
 
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path,
                 const std::vector<PointField>& fields) {
-  const std::string end = detail::extension(path);
-  const bool is_vtu = end == ".vtu";
-  if (!is_vtu && !detail::asks_for_source_format(mesh, end))
-    throw InputError(
-        fmt::format("{}: extension \"{}\" is not written from this mesh; use {} or .vtu",
-                    path.string(), end, detail::usual_extension(mesh.format)));
-  detail::check_writable(mesh, path);
+  const detail::Writer writer = detail::choose_writer(mesh, path);
+  detail::check_finite(mesh, path);
   detail::OutputFile output(path);
-  detail::write_to(mesh, fields, is_vtu, output);
+  detail::write_with(writer, mesh, fields, output);
   output.commit();
 }
 
@@ -178,6 +197,23 @@ void write_text(const std::string& text, const std::filesystem::path& path) {
   detail::OutputFile output(path);
   output.write(text);
   output.commit();
+}
+
+void check_output(const Mesh& mesh, const std::filesystem::path& path) {
+  detail::choose_writer(mesh, path);
+  check_text_output(path);
+}
+
+void check_text_output(const std::filesystem::path& path) {
+  // Whoever reads a pipe would take the end of the trial for the end of the file.
+  std::error_code ignored;
+  if (std::filesystem::is_fifo(path, ignored)) return;
+  const detail::OutputFile trial(path);
+}
+
+std::string checksum(const Mesh& mesh) {
+  if (mesh.source == nullptr) return {};
+  return fmt::format("{:016x}", detail::hash(mesh.source->file.view()));
 }
 
 double coordinate_spacing(const Mesh& mesh) {

@@ -36,6 +36,9 @@ struct StlFacet {
   std::array<Index, 3> nodes{};             ///< of the mesh, one for each corner
 };
 
+/// Of everything in a mesh but the positions of its nodes.
+std::uint64_t topology_hash(const Mesh& mesh);
+
 }  // namespace detail
 
 class MeshSource {
@@ -43,9 +46,16 @@ class MeshSource {
   detail::FileBytes file;
   detail::NumberFormat coordinates = detail::NumberFormat::text;
   bool swap_bytes = false;               ///< the file's byte order is not this machine's
+  std::uint64_t topology = 0;            ///< topology_hash of the mesh as it was read
   std::vector<Vec3> positions;           ///< n positions as they were read
   std::vector<std::uint64_t> offsets;    ///< n offsets of first coordinates, ascending; not for STL
   std::vector<detail::StlFacet> facets;  ///< STL only, ascending
 };
 
+namespace detail {
+
+/// The last step of each reader: keeps the file and what the mesh is like as it was read.
+void attach_source(Mesh& mesh, MeshSource source, FileBytes file);
+
+}  // namespace detail
 }  // namespace roughmesh

@@ -3,6 +3,7 @@
 // nodes comes out as it went in.
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -231,23 +232,6 @@ TEST(ReadMsh, TakesNodeNumbersUpToTheLargestInteger) {
   }
 }
 
-TEST(ReadMsh, KeepsElementsOfSeveralGroups) {
-  const test::TemporaryFolder folder;
-  const std::string head =
-      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n";
-  const Mesh mesh = read_text(folder, "a.msh",
-                              head +
-                                  "$Elements\n4\n1 2 2 5 1 1 2 3\n2 2 2 6 1 1 2 3\n"
-                                  "3 2 0 1 2 3\n4 2 1 5 1 2 3\n$EndElements");
-  ASSERT_EQ(mesh.blocks.size(), 4);
-  EXPECT_EQ(mesh.blocks[0].physical_groups, std::vector<Tag>{5});
-  EXPECT_EQ(mesh.blocks[1].physical_groups, std::vector<Tag>{6});
-  EXPECT_TRUE(mesh.blocks[2].physical_groups.empty());
-  EXPECT_EQ(mesh.blocks[3].physical_groups, std::vector<Tag>{5});
-  EXPECT_EQ(mesh.blocks[3].entity, 0);
-  EXPECT_EQ(mesh.groups.size(), 2);
-}
-
 TEST(ReadMsh, TakesSectionsInAnyOrderThatMakesSense) {
   const test::TemporaryFolder folder;
   const Mesh mesh = read_text(folder, "a.msh",
@@ -419,4 +403,72 @@ TEST(RealFiles, ComeOutIdentical) {
     write_mesh(mesh, copy);
     EXPECT_EQ(test::read_bytes(copy), test::read_bytes(path));
   }
+}
+
+namespace {
+
+// One change to each part of a mesh but its positions.
+std::vector<std::function<void(Mesh&)>> changes_of_topology() {
+  return {[](Mesh& mesh) { std::swap(mesh.blocks.back().nodes[0], mesh.blocks.back().nodes[1]); },
+          [](Mesh& mesh) { mesh.blocks[0].tags[0] += 1000; },
+          [](Mesh& mesh) { mesh.blocks[0].physical_groups = {77}; },
+          [](Mesh& mesh) { mesh.blocks[0].entity += 50; },
+          [](Mesh& mesh) { mesh.blocks.pop_back(); },
+          [](Mesh& mesh) { mesh.groups[0].name += "x"; },
+          [](Mesh& mesh) { mesh.node_tags.back() += 1000; },
+          [](Mesh& mesh) { mesh.periodic_links[0].nodes.pop_back(); },
+          [](Mesh& mesh) {
+            mesh.nodes.emplace_back(1, 2, 3);
+            mesh.node_tags.push_back(4000);
+          }};
+}
+
+std::string refusal(const Mesh& mesh, const std::filesystem::path& path) {
+  try {
+    write_mesh(mesh, path);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "written";
+}
+
+}  // namespace
+
+// What is written anew is what the same mesh made in memory gives.
+TEST(WriteMesh, WritesAnewWhatWasChangedSinceItWasRead) {
+  const test::TemporaryFolder folder;
+  for (const int version : {2, 4}) {
+    const Mesh read = read_text(folder, "a.msh", test::msh_bytes(zoo(), {.version = version}));
+    for (const auto& change : changes_of_topology()) {
+      Mesh changed = read;
+      change(changed);
+      write_mesh(changed, folder / "changed.msh");
+      changed.source.reset();
+      write_mesh(changed, folder / "made.msh");
+      EXPECT_EQ(test::read_bytes(folder / "changed.msh"), test::read_bytes(folder / "made.msh"));
+    }
+  }
+}
+
+TEST(WriteMesh, LosesNoElementAddedSinceItWasRead) {
+  const test::TemporaryFolder folder;
+  Mesh mesh = read_text(folder, "a.msh", test::msh_bytes(test::plate(2), {.version = 2}));
+  mesh.blocks.push_back(test::make_block(test::triangle_type, 2, {9}, {0, 1, 8}, 500));
+  write_mesh(mesh, folder / "b.msh");
+  EXPECT_EQ(n_elements(read_mesh(folder / "b.msh")), n_elements(test::plate(2)) + 1);
+  mesh.blocks.back().nodes[0] = 9;  // one beyond the last node
+  EXPECT_NE(refusal(mesh, folder / "c.msh").find("nodes that do not exist"), std::string::npos);
+  EXPECT_EQ(folder.n_files(), 2);
+}
+
+TEST(WriteMesh, WritesOtherFormatsOnlyWherePositionsAloneChanged) {
+  const test::TemporaryFolder folder;
+  Mesh mesh = read_text(folder, "a.ply2", "3 1\n0 0 0 1 0 0 0 1 0\n3 0 1 2");
+  mesh.blocks[0].nodes = {0, 2, 1};
+  EXPECT_EQ(refusal(mesh, folder / "b.ply2"),
+            (folder / "b.ply2").string() +
+                ": extension \".ply2\" is not written from this mesh, of which more than positions "
+                "was changed; use .msh or .vtu");
+  EXPECT_EQ(refusal(mesh, folder / "b.msh"), "written");
+  EXPECT_EQ(read_mesh(folder / "b.msh").blocks[0].nodes, mesh.blocks[0].nodes);
 }

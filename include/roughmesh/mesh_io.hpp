@@ -28,11 +28,12 @@ struct PointField {
   std::vector<double> values;  ///< n_nodes * n_components, node by node
 };
 
-/// Writes the mesh. Where the extension of `path` asks for the format the mesh was read from, the
-/// bytes of the source are copied and only the numbers of nodes whose position changed are replaced
-/// (shortest decimals that read back exactly in ASCII files); facet normals of an STL are computed
-/// anew. Only `nodes` may differ from what read_mesh returned. ".vtu" is written from the arrays,
-/// with `fields`.
+/// Writes the mesh. Where only positions differ from what read_mesh returned, `path` has the
+/// extension of that file or of its format: the bytes of the source are copied and only the numbers
+/// of nodes whose position changed are replaced (shortest decimals that read back exactly in ASCII
+/// files); facet normals of an STL are computed anew. A mesh changed in any other way, or made in
+/// memory, is written anew from its arrays as MSH 4.1 text (".msh" only). ".vtu" is written from
+/// the arrays of any mesh, with `fields`.
 ///
 /// The file appears whole or not at all: it is written beside `path` and renamed. `path` may be the
 /// file the mesh was read from.
@@ -43,6 +44,21 @@ void write_mesh(const Mesh& mesh, const std::filesystem::path& path,
 
 /// Writes text the same way: whole or not at all. For reports beside meshes.
 void write_text(const std::string& text, const std::filesystem::path& path);
+
+/// Finds out before a long run whether write_mesh could write the mesh to `path` now, whatever its
+/// positions become; leaves nothing behind. A pipe is not tried.
+///
+/// @throws InputError  as write_mesh would: extension, elements that the format lacks, missing
+/// folder, no permission, a directory
+void check_output(const Mesh& mesh, const std::filesystem::path& path);
+
+/// Likewise for write_text.
+void check_text_output(const std::filesystem::path& path);
+
+/// 16 hexadecimal digits of the XXH3 hash (64 bits) of the bytes of the file the mesh was read
+/// from, as `xxhsum -H3` prints them; empty for a mesh made in memory. Finds mix-ups, not
+/// forgeries.
+std::string checksum(const Mesh& mesh);
 
 /// Largest distance between neighbouring numbers of the source's number format at the coordinates
 /// of the mesh: 2^-23 of a coordinate's binade for binary STL, 2^-52 otherwise. A length.
