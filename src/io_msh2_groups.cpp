@@ -2,9 +2,12 @@
 // MSH 2.2 lists an element of several physical groups once for each; here the listings become one
 // element again.
 #include <algorithm>
+#include <compare>
+#include <iterator>
 #include <map>
 #include <span>
 #include <tuple>
+#include <utility>
 
 #include "hash.hpp"
 #include "io_msh.hpp"
@@ -89,7 +92,7 @@ class Listings {
     const auto order =
         std::lexicographical_compare_three_way(nodes(a.position).begin(), nodes(a.position).end(),
                                                nodes(b.position).begin(), nodes(b.position).end());
-    return order != 0 ? order < 0 : a.position < b.position;
+    return std::is_neq(order) ? std::is_lt(order) : a.position < b.position;
   }
 
   // One group lists an element once, so a second listing in the same block is another element: the

@@ -126,6 +126,10 @@ const char* usual_extension(MeshFormat format) {
 
 enum class Writer { patch, patch_stl, new_msh4, vtu };
 
+Writer writer_of_patches(MeshFormat format) {
+  return format == MeshFormat::stl ? Writer::patch_stl : Writer::patch;
+}
+
 // A mesh that is no longer the one that was read, apart from positions, is as if made in memory.
 Writer writer_of_msh_or_source_format(const Mesh& mesh, const std::filesystem::path& path) {
   const std::string end = extension(path);
@@ -134,9 +138,7 @@ Writer writer_of_msh_or_source_format(const Mesh& mesh, const std::filesystem::p
   const char* const usual = usual_extension(is_new ? MeshFormat::none : mesh.format);
   // Whatever a file was called when it was read it may be called when it is written.
   if (end == usual || (!is_new && end == extension(mesh.source->file.path)))
-    return is_new                           ? Writer::new_msh4
-           : mesh.format == MeshFormat::stl ? Writer::patch_stl
-                                            : Writer::patch;
+    return is_new ? Writer::new_msh4 : writer_of_patches(mesh.format);
   throw InputError(fmt::format(
       "{}: extension \"{}\" is not written from this mesh{}; use {} or .vtu", path.string(), end,
       is_changed ? ", of which more than positions was changed" : "", usual));

@@ -122,12 +122,17 @@ TEST(ReadMsh2, TakesReversedListingsForTheSameElement) {
 
 TEST(ReadMsh2, KeepsApartWhatOneGroupOrOneTypeListsTwice) {
   const test::TemporaryFolder folder;
-  // Two triangles back to back, both in groups 1 and 2; an element without an entity of its own.
+  // Two triangles back to back, both in groups 1 and 2; an element without an entity.
   const Mesh pillow = read_elements(
       folder, {"2 2 1 1 1 2 3", "2 2 1 1 1 3 2", "2 2 2 1 1 2 3", "2 2 2 1 1 3 2", "2 0 1 2 3"});
   ASSERT_EQ(pillow.blocks.size(), 2);
   expect_block(pillow.blocks[0], 1, {1, 2}, {0, 1, 2, 0, 2, 1}, {1, 2});
   expect_block(pillow.blocks[1], 0, {}, {0, 1, 2}, {5});
+  // A group without an entity; 0 is no group.
+  const Mesh no_entity = read_elements(folder, {"2 1 7 1 2 3", "2 2 0 0 1 2 4"});
+  ASSERT_EQ(no_entity.blocks.size(), 2);
+  expect_block(no_entity.blocks[0], 0, {7}, {0, 1, 2}, {1});
+  expect_block(no_entity.blocks[1], 0, {}, {0, 1, 3}, {2});
   // A quadrangle and a tetrahedron on the same nodes.
   EXPECT_EQ(n_elements(read_elements(folder, {"3 2 1 1 1 2 3 4", "4 2 2 1 1 2 3 4"})), 2);
 }
