@@ -160,6 +160,9 @@ void run_roughen(const RoughenOptions& options) {
   require_files(options);
   check_options(options);
   const Mesh mesh = read_mesh(options.input);
+  // Before the hours that a large surface may take.
+  check_output(mesh, output_path(options.output, options.first));
+  check_text_output(report_path(options));
   ReportFile file(report_path(options), start, seconds_since(start));
   make_realizations(mesh, options, file);
   file.write();

@@ -48,6 +48,11 @@ Report begin_report(const Mesh& mesh, const RoughenOptions& options) {
   report.n_nodes = mesh.n_nodes();
   report.n_elements = n_elements(mesh);
   report.request = options;
+  report.request.checksum = checksum(mesh);
+  if (!options.checksum.empty() && options.checksum != report.request.checksum)
+    report.warnings.push_back(fmt::format(
+        "INPUT has checksum {}, not {}: it is not the file that --checksum or the job means",
+        report.request.checksum, options.checksum));
   return report;
 }
 

@@ -20,6 +20,12 @@ void warn_of_surface(Report& report, const Surface& surface) {
         "{} edges join three or more faces: normals along them are a compromise; choose one "
         "--group at a time",
         surface.n_nonmanifold_edges));
+  if (surface.n_coincident_nodes > 0)
+    report.warnings.push_back(fmt::format(
+        "{} nodes lie where nodes of the rough surface lie, but on none of its faces; they stay, "
+        "so "
+        "a gap opens or closes there; choose the faces of both sides if they belong together",
+        surface.n_coincident_nodes));
   if (surface.n_duplicate_faces > 0)
     report.warnings.push_back(fmt::format(
         "{} faces stand on the nodes of another one and count once", surface.n_duplicate_faces));

@@ -77,6 +77,12 @@ TEST_F(CommandLine, AReportReproducesItsMeshByteForByte) {
   const Outcome again = run("roughen --job job.json");
   EXPECT_EQ(again.exit_code, 0) << again.err;
   EXPECT_EQ(test::read_bytes(folder / "rough.msh"), bytes);
+  EXPECT_EQ(again.err.find("checksum"), std::string::npos);
+  // A changed input is told.
+  std::filesystem::copy_file(folder / "rough.msh", folder / "ball.msh",
+                             std::filesystem::copy_options::overwrite_existing);
+  EXPECT_NE(run("roughen --job job.json -o other.msh --volume none").err.find("checksum"),
+            std::string::npos);
   // Arguments override the job.
   EXPECT_EQ(run("roughen --job job.json --seed 98 -o other.msh").exit_code, 0);
   EXPECT_NE(test::read_bytes(folder / "other.msh"), bytes);
@@ -215,6 +221,14 @@ TEST_F(CommandLine, InvertedElementsAreCodeOneAndNothingIsWritten) {
   const Outcome allowed = run(job + "--allow-invalid");
   EXPECT_EQ(allowed.exit_code, 0);
   EXPECT_NE(allowed.err.find("warning"), std::string::npos);
+}
+
+TEST_F(CommandLine, ReportsOutputsThatCannotBeWrittenBeforeTheWork) {
+  // Rq of 10^9 would be refused with code 1, had anything been computed.
+  const std::string job = "roughen ball.msh --group surface --rms 1e9 --length 0.3 ";
+  for (const std::string output :
+       {"-o rough.xyz", "-o no/rough.msh", "-o rough.msh --report no/r.json"})
+    expect_failure(run(job + output), 2, output);
 }
 
 TEST_F(CommandLine, AFullDiskLeavesNoPartialFile) {

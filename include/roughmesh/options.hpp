@@ -29,6 +29,7 @@ std::string_view name(VolumeChoice choice);
 /// Lengths are in the unit of the mesh, angles in degrees (they are typed by people).
 struct RoughenOptions {
   std::string input = {};
+  std::string checksum = {};
   std::string output = {};
   std::vector<std::string> group = {};
   double rms = 0;
@@ -66,6 +67,10 @@ template <class Options, class Visit>
 void for_each_option(Options& options, Visit&& visit) {
   visit(OptionText{"input", "INPUT", "mesh to roughen: .msh (2.2, 4.1), .stl, .ply2"},
         options.input);
+  visit(
+      OptionText{"checksum", "HEX",
+                 "checksum of INPUT, as reports have it; another file is roughened with a warning"},
+      options.checksum);
   visit(
       OptionText{
           "output", "OUTPUT",
