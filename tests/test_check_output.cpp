@@ -11,22 +11,15 @@
 
 #include "roughmesh/mesh_io.hpp"
 
+#include "support/errors.hpp"
 #include "support/files.hpp"
 #include "support/meshes.hpp"
 #include "support/msh_files.hpp"
 
 using namespace roughmesh;
+using test::message_of;
 
 namespace {
-
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 void expect_same_refusal(const Mesh& mesh, const std::filesystem::path& path,
                          const std::string& part) {

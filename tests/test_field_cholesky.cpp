@@ -110,9 +110,9 @@ std::vector<Case> every_family() {
     add("matern_2_5", Family::matern, 2.5, 0.2, distance, plain);
     add("self_affine", Family::self_affine, 0.8, 0.4, distance, plain);
     add("stretched", Family::stretched, 1.4, 0.4, distance, plain);
+    add("rational_quadratic", Family::rational_quadratic, 1.5, 0.1, distance, plain);
   }
   add("matern_2_5", Family::matern, 2.5, 2.0, DistanceKind::euclidean, pivoted);
-  add("rational_quadratic", Family::rational_quadratic, 1.5, 0.1, DistanceKind::euclidean, plain);
   add("rational_quadratic", Family::rational_quadratic, 1.5, 0.6, DistanceKind::euclidean, pivoted);
   return cases;
 }

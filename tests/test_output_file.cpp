@@ -12,21 +12,14 @@
 #include "roughmesh/mesh_io.hpp"
 
 #include "output_file.hpp"
+#include "support/errors.hpp"
 #include "support/files.hpp"
 #include "support/meshes.hpp"
 
 using namespace roughmesh;
+using test::message_of;
 
 namespace {
-
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 // Exit status of a child process that runs the action.
 int status_of_child(const std::function<int()>& action) {
