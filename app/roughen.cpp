@@ -133,7 +133,8 @@ void make_realizations(const Mesh& mesh, const RoughenOptions& options, ReportFi
   const ProgressBar progress(options);
   const auto deliver = [&](const RoughMesh& rough, Report& report) {
     const std::string path = output_path(options.output, rough.realization);
-    write_mesh(rough.mesh, path, is_vtu(path) ? point_fields(rough) : std::vector<PointField>());
+    write_mesh(rough.mesh, path,
+               {.fields = is_vtu(path) ? point_fields(rough) : std::vector<PointField>()});
     report.realizations.back().path = path;
     file.update(report);
     progress.show(report.realizations.size());

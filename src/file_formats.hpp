@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One reader or writer per file format; read_mesh and write_mesh choose among them.
+// What roughmesh knows of each file format, in one table. A new format is one io_*.cpp that
+// declares its FileFormat here, and a line in file_formats.cpp.
 #pragma once
 
+#include <filesystem>
 #include <limits>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include "roughmesh/mesh.hpp"
@@ -13,26 +17,62 @@
 
 namespace roughmesh::detail {
 
-Mesh read_msh(FileBytes file);
-Mesh read_binary_stl(FileBytes file);
-Mesh read_text_stl(FileBytes file);
-Mesh read_ply2(FileBytes file);
+/// What a file written anew in a format holds beside positions and connectivity.
+struct Holds {
+  bool groups = false;          ///< numbers of physical groups
+  bool several_groups = false;  ///< an element may be in more than one
+  bool group_names = false;
+  bool periodic_links = false;
+  bool tags = false;          ///< numbers of nodes and elements
+  bool point_fields = false;  ///< WriteOptions::fields
+};
 
-bool is_binary_stl(std::string_view bytes);  ///< the size follows from the number of triangles
-bool is_text_stl(std::string_view bytes);    ///< begins with "solid"
+struct FileFormat {
+  MeshFormat format = MeshFormat::none;
+  /// In lower case; the first is the usual one. Of formats that share an extension, the first in
+  /// the table has it by default.
+  std::vector<std::string_view> extensions = {};
+  /// How a good file begins, for the message about one that does not; for example "begin with ply".
+  std::string_view beginning = {};
 
-/// The source with the coordinates of moved nodes replaced: MSH and PLY2.
+  /// Is this a file of the format? `extension` is in lower case.
+  bool (*recognizes)(std::string_view bytes, std::string_view extension) = nullptr;
+  Mesh (*read)(FileBytes file) = nullptr;
+  /// Copies the source with the numbers of moved nodes replaced.
+  void (*write_patched)(const Mesh& mesh, OutputFile& output) = nullptr;
+
+  /// Refuses a mesh that the format cannot hold, whatever its positions are.
+  /// @throws InputError
+  void (*check_new)(const Mesh& mesh, const std::filesystem::path& path) = nullptr;
+  /// From the arrays alone, of a mesh that passed the check. Null if never written anew.
+  void (*write_new)(const Mesh& mesh, const WriteOptions& options, OutputFile& output) = nullptr;
+  Holds holds = {};
+  std::vector<Encoding> encodings = {Encoding::text};  ///< of new files, the usual one first
+};
+
+extern const FileFormat msh4_format, msh2_format, stl_format, ply2_format, vtu_format;
+
+/// Every format, in the order in which they are asked whether they recognize a file.
+std::span<const FileFormat* const> file_formats();
+const FileFormat& file_format(MeshFormat format);  ///< @pre not `none`
+
+/// The format that a file's content and extension show.
+/// @throws FormatError  claims by its extension to be of a format that it is not, or is empty
+/// @throws InputError   of no format that is read
+const FileFormat& recognize(const FileBytes& file);
+
+std::string lower_extension(const std::filesystem::path& path);  ///< with its dot
+
+/// The source with the coordinates of moved nodes replaced, where MeshSource::offsets says where
+/// they stand.
 void write_patched(const Mesh& mesh, OutputFile& output);
-void write_patched_stl(const Mesh& mesh, OutputFile& output);
 
-/// Refuse a mesh that the format cannot hold.
+/// @throws InputError  fields whose sizes do not fit, or elements that refer to nodes that are not
+void check_arrays(const Mesh& mesh, const std::filesystem::path& path);
+/// Elements of an order above `most`, or (where `surface_only`) of dimension 3, are refused.
 /// @throws InputError
-void check_for_msh4(const Mesh& mesh, const std::filesystem::path& path);
-void check_for_vtu(const Mesh& mesh, const std::filesystem::path& path);
-
-/// From the arrays alone, of a mesh that passed the check.
-void write_new_msh4(const Mesh& mesh, OutputFile& output);
-void write_vtu(const Mesh& mesh, const std::vector<PointField>& fields, OutputFile& output);
+void check_elements(const Mesh& mesh, const std::filesystem::path& path, int most_order,
+                    bool surface_only);
 
 inline constexpr Tag largest_index = std::numeric_limits<Index>::max();
 

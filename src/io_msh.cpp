@@ -250,7 +250,10 @@ void read_sections(MshReader& reader) {
   list_groups(reader);
 }
 
-}  // namespace
+bool is_msh(std::string_view bytes, std::string_view) {
+  const std::size_t start = bytes.find_first_not_of(" \t\r\n");
+  return start != bytes.npos && bytes[start] == '$';
+}
 
 Mesh read_msh(FileBytes file) {
   MshReader reader(file);
@@ -262,5 +265,26 @@ Mesh read_msh(FileBytes file) {
   attach_source(reader.mesh, std::move(source), std::move(file));
   return std::move(reader.mesh);
 }
+
+}  // namespace
+
+const FileFormat msh4_format = {
+    .format = MeshFormat::msh4,
+    .extensions = {".msh"},
+    .beginning = "begin with $MeshFormat (a geometry script has to be called .geo)",
+    .recognizes = is_msh,
+    .read = read_msh,
+    .write_patched = write_patched,
+    .check_new = check_for_msh,
+    .write_new = write_new_msh4,
+    .holds = {.groups = true,
+              .several_groups = true,
+              .group_names = true,
+              .periodic_links = true,
+              .tags = true}};
+
+// Recognized and read by the same code as MSH 4.1.
+const FileFormat msh2_format = {
+    .format = MeshFormat::msh2, .extensions = {".msh"}, .write_patched = write_patched};
 
 }  // namespace roughmesh::detail

@@ -10,6 +10,7 @@
 
 #include "roughmesh/mesh.hpp"
 
+#include "file_formats.hpp"
 #include "node_lookup.hpp"
 #include "scanner.hpp"
 
@@ -67,5 +68,11 @@ void read_msh4_partitioned_entities(MshReader& reader);
 void read_msh4_nodes(MshReader& reader);
 void read_msh4_elements(MshReader& reader);
 void read_msh4_periodic(MshReader& reader);
+
+/// Refuses elements that MSH has no number for.
+/// @throws InputError
+void check_for_msh(const Mesh& mesh, const std::filesystem::path& path);
+
+void write_new_msh4(const Mesh& mesh, const WriteOptions& options, OutputFile& output);
 
 }  // namespace roughmesh::detail

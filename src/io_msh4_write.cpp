@@ -11,6 +11,7 @@
 
 #include "file_formats.hpp"
 #include "gmsh_element_types.hpp"
+#include "io_msh.hpp"
 
 namespace roughmesh::detail {
 namespace {
@@ -42,12 +43,6 @@ std::vector<Entity> list_entities(const Mesh& mesh) {
         {dim, is_free ? tag : ++largest[static_cast<std::size_t>(dim)], groups, list});
   }
   return entities;
-}
-
-bool is_consistent(const ElementBlock& block, Index n_nodes) {
-  const auto is_node = [&](Index node) { return node >= 0 && node < n_nodes; };
-  return block.nodes.size() == block.tags.size() * static_cast<std::size_t>(block.type.n_nodes) &&
-         std::all_of(block.nodes.begin(), block.nodes.end(), is_node);
 }
 
 class Writer {
@@ -159,25 +154,15 @@ class Writer {
 
 }  // namespace
 
-void check_for_msh4(const Mesh& mesh, const std::filesystem::path& path) {
-  const std::string file = path.string();
-  if (mesh.nodes.empty() || n_elements(mesh) == 0)
-    throw InputError(fmt::format("{}: a mesh without nodes or elements is not written", file));
-  if (mesh.node_tags.size() != mesh.nodes.size())
-    throw InputError(fmt::format("{}: {} nodes but {} node numbers; give each node one", file,
-                                 mesh.n_nodes(), mesh.node_tags.size()));
-  for (const ElementBlock& block : mesh.blocks) {
+void check_for_msh(const Mesh& mesh, const std::filesystem::path& path) {
+  for (const ElementBlock& block : mesh.blocks)
     if (gmsh_number(block.type) == 0)
-      throw InputError(fmt::format("{}: MSH has no {} with {} nodes; use another element", file,
-                                   name(block.type), block.type.n_nodes));
-    if (!is_consistent(block, mesh.n_nodes()))
-      throw InputError(
-          fmt::format("{}: a block of {} names nodes that do not exist or lacks numbers; give each "
-                      "element a number and its nodes",
-                      file, name(block.type)));
-  }
+      throw InputError(fmt::format("{}: MSH has no {} with {} nodes; use another element",
+                                   path.string(), name(block.type), block.type.n_nodes));
 }
 
-void write_new_msh4(const Mesh& mesh, OutputFile& output) { Writer(mesh, output).write_all(); }
+void write_new_msh4(const Mesh& mesh, const WriteOptions&, OutputFile& output) {
+  Writer(mesh, output).write_all();
+}
 
 }  // namespace roughmesh::detail

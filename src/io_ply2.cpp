@@ -51,8 +51,6 @@ void read_faces(Scanner& scanner, std::size_t n, Mesh& mesh) {
     if (block.size() > 0) mesh.blocks.push_back(std::move(block));
 }
 
-}  // namespace
-
 Mesh read_ply2(FileBytes file) {
   Scanner scanner(file);
   const Tag n_announced = scanner.text_integer();
@@ -73,5 +71,14 @@ Mesh read_ply2(FileBytes file) {
   attach_source(mesh, std::move(source), std::move(file));
   return mesh;
 }
+
+}  // namespace
+
+const FileFormat ply2_format = {
+    .format = MeshFormat::ply2,
+    .extensions = {".ply2"},
+    .recognizes = [](std::string_view, std::string_view extension) { return extension == ".ply2"; },
+    .read = read_ply2,
+    .write_patched = write_patched};
 
 }  // namespace roughmesh::detail

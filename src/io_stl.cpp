@@ -213,8 +213,6 @@ Vec3 normal_of_stored(const MeshSource& source, const std::array<Vec3, 3>& corne
   return area / length + Vec3::Zero();  // no -0
 }
 
-}  // namespace
-
 bool is_binary_stl(std::string_view bytes) {
   const std::size_t start = header_bytes + sizeof(std::uint32_t);
   return bytes.size() >= start && bytes.size() == start + facet_bytes * n_binary_facets(bytes);
@@ -277,5 +275,21 @@ void write_patched_stl(const Mesh& mesh, OutputFile& output) {
   }
   patcher.finish();
 }
+
+Mesh read_stl(FileBytes file) {
+  return is_binary_stl(file.view()) ? read_binary_stl(std::move(file))
+                                    : read_text_stl(std::move(file));
+}
+
+}  // namespace
+
+const FileFormat stl_format = {
+    .format = MeshFormat::stl,
+    .extensions = {".stl"},
+    .beginning = "begin with \"solid\" or have the size that its number of triangles asks for",
+    .recognizes = [](std::string_view bytes,
+                     std::string_view) { return is_binary_stl(bytes) || is_text_stl(bytes); },
+    .read = read_stl,
+    .write_patched = write_patched_stl};
 
 }  // namespace roughmesh::detail

@@ -37,17 +37,6 @@ std::uint8_t vtk_cell_type(ElementShape shape) {
   return 0;
 }
 
-void check_fields(const Mesh& mesh, const std::vector<PointField>& fields,
-                  const OutputFile& output) {
-  const std::string file = output.path().string();
-  for (const PointField& field : fields)
-    if (field.n_components < 1 ||
-        field.values.size() != mesh.nodes.size() * static_cast<std::size_t>(field.n_components))
-      throw InputError(fmt::format("{}: field {} has {} values where {} nodes with {} each are due",
-                                   file, field.name, field.values.size(), mesh.n_nodes(),
-                                   field.n_components));
-}
-
 std::string escaped(std::string_view text) {
   std::string result;
   for (const char c : text) {
@@ -172,24 +161,26 @@ void write_arrays(OutputFile& output, const Mesh& mesh, const Sizes& n) {
   });
 }
 
-}  // namespace
-
-void check_for_vtu(const Mesh& mesh, const std::filesystem::path& path) {
-  for (const ElementBlock& block : mesh.blocks)
-    if (block.type.order > 1)
-      throw InputError(
-          fmt::format("{}: a {} cannot be written to VTU, only elements of order 1; write .msh",
-                      path.string(), name(block.type)));
+void check_vtu(const Mesh& mesh, const std::filesystem::path& path) {
+  check_elements(mesh, path, 1, false);
 }
 
-void write_vtu(const Mesh& mesh, const std::vector<PointField>& fields, OutputFile& output) {
-  check_fields(mesh, fields, output);
+void write_vtu(const Mesh& mesh, const WriteOptions& options, OutputFile& output) {
   const Sizes n = sizes(mesh);
-  output.write(header(n, fields));
+  output.write(header(n, options.fields));
   write_arrays(output, mesh, n);
-  for (const PointField& field : fields)
+  for (const PointField& field : options.fields)
     write_doubles(output, field.values.data(), field.values.size());
   output.write("\n  </AppendedData>\n</VTKFile>\n");
 }
+
+}  // namespace
+
+const FileFormat vtu_format = {.format = MeshFormat::vtu,
+                               .extensions = {".vtu"},
+                               .check_new = check_vtu,
+                               .write_new = write_vtu,
+                               .holds = {.point_fields = true},
+                               .encodings = {Encoding::binary}};
 
 }  // namespace roughmesh::detail

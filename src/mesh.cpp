@@ -48,21 +48,10 @@ std::string name(const ElementType& type) {
 std::span<const std::vector<int>> local_faces(ElementShape shape) { return facts(shape).faces; }
 
 std::string name(MeshFormat format) {
-  switch (format) {
-    case MeshFormat::msh2:
-      return "msh2";
-    case MeshFormat::msh4:
-      return "msh4";
-    case MeshFormat::stl:
-      return "stl";
-    case MeshFormat::ply2:
-      return "ply2";
-    case MeshFormat::vtu:
-      return "vtu";
-    case MeshFormat::none:
-      break;
-  }
-  return "none";
+  static constexpr std::array names = {"none", "msh2",  "msh4", "stl",    "ply",
+                                       "ply2", "obj",   "off",  "abaqus", "nastran",
+                                       "unv",  "medit", "su2",  "vtk",    "vtu"};
+  return names[static_cast<std::size_t>(format)];
 }
 
 int dimension(const Mesh& mesh) {

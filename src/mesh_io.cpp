@@ -2,155 +2,103 @@
 #include "roughmesh/mesh_io.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <memory>
 #include <new>
 #include <system_error>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "file_formats.hpp"
 #include "hash.hpp"
-#include "io_patch.hpp"
 
 namespace roughmesh {
-namespace detail {
 namespace {
 
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor() {
-    if (number_ >= 0) ::close(number_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int number() const { return number_; }
+using detail::FileFormat;
 
- private:
-  int number_;
+// How a mesh goes into a file.
+struct WritePlan {
+  const FileFormat* format = nullptr;
+  bool copies_source = false;
+  WriteOptions options;
 };
 
-[[noreturn]] void fail_to_read(const std::filesystem::path& path, int error) {
-  const char* const remedy = error == ENOENT || error == ENOTDIR ? "check the path"
-                             : error == EACCES                   ? "ask for permission to read it"
-                                                                 : "choose another file";
-  throw InputError(fmt::format("{}: cannot be read: {}; {}", path.string(),
-                               std::generic_category().message(error), remedy));
-}
-
-std::size_t size_of_regular_file(const std::filesystem::path& path, int descriptor) {
-  struct stat facts {};
-  if (::fstat(descriptor, &facts) != 0) fail_to_read(path, errno);
-  if (S_ISDIR(facts.st_mode))
-    throw InputError(fmt::format("{}: is a directory; name a mesh file in it", path.string()));
-  if (!S_ISREG(facts.st_mode))
-    throw InputError(
-        fmt::format("{}: is a pipe or device; save it to a file first", path.string()));
-  return static_cast<std::size_t>(facts.st_size);
-}
-
-}  // namespace
-
-FileBytes read_file(const std::filesystem::path& path) {
-  // Without O_NONBLOCK, opening a pipe that nobody writes to would wait for ever.
-  const Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  if (descriptor.number() < 0) fail_to_read(path, errno);
-  const std::size_t size = size_of_regular_file(path, descriptor.number());
-  FileBytes file{path, std::make_unique_for_overwrite<char[]>(size + 1), 0};
-  while (file.size < size) {
-    const ssize_t n = ::read(descriptor.number(), file.data.get() + file.size, size - file.size);
-    if (n < 0 && errno != EINTR) fail_to_read(path, errno);
-    if (n == 0) break;
-    if (n > 0) file.size += static_cast<std::size_t>(n);
-  }
-  file.data[file.size] = '\0';
-  return file;
-}
-
-namespace {
-
-std::string extension(const std::filesystem::path& path) {
-  std::string text = path.extension().string();
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  return text;
-}
-
-bool begins_msh(std::string_view bytes) {
-  const std::size_t start = bytes.find_first_not_of(" \t\r\n");
-  return start != bytes.npos && bytes[start] == '$';
-}
-
-[[noreturn]] void refuse_unknown(const FileBytes& file) {
-  const std::string path = file.path.string();
-  const std::string end = extension(file.path);
-  if (end == ".msh")
-    throw FormatError(path +
-                      ":1: does not begin with $MeshFormat, so it is no MSH file; mesh a "
-                      "geometry script with gmsh -3 first");
-  if (end == ".stl")
-    throw FormatError(
-        fmt::format("{}: byte {}: neither begins with \"solid\" nor has the size that "
-                    "its number of triangles asks for: it is cut short or no STL",
-                    path, file.size));
-  throw InputError(path + ": of a kind that is not read; convert it to MSH, STL or PLY2");
-}
-
-Mesh read_by_content(FileBytes file) {
-  const std::string_view bytes = file.view();
-  if (bytes.empty())
-    throw FormatError(file.path.string() + ":1: the file is empty; save the mesh again");
-  if (begins_msh(bytes)) return read_msh(std::move(file));
-  // Before text, since headers of binary files like to begin with "solid" too.
-  if (is_binary_stl(bytes)) return read_binary_stl(std::move(file));
-  if (is_text_stl(bytes)) return read_text_stl(std::move(file));
-  if (extension(file.path) == ".ply2") return read_ply2(std::move(file));
-  refuse_unknown(file);
-}
-
-const char* usual_extension(MeshFormat format) {
-  switch (format) {
-    case MeshFormat::stl:
-      return ".stl";
-    case MeshFormat::ply2:
-      return ".ply2";
-    default:
-      return ".msh";
-  }
-}
-
-enum class Writer { patch, patch_stl, new_msh4, vtu };
-
-Writer writer_of_patches(MeshFormat format) {
-  return format == MeshFormat::stl ? Writer::patch_stl : Writer::patch;
-}
-
 // A mesh that is no longer the one that was read, apart from positions, is as if made in memory.
-Writer writer_of_msh_or_source_format(const Mesh& mesh, const std::filesystem::path& path) {
-  const std::string end = extension(path);
-  const bool is_changed = mesh.source != nullptr && mesh.source->topology != topology_hash(mesh);
-  const bool is_new = mesh.source == nullptr || is_changed;
-  const char* const usual = usual_extension(is_new ? MeshFormat::none : mesh.format);
-  // Whatever a file was called when it was read it may be called when it is written.
-  if (end == usual || (!is_new && end == extension(mesh.source->file.path)))
-    return is_new ? Writer::new_msh4 : writer_of_patches(mesh.format);
+bool is_as_read(const Mesh& mesh) {
+  return mesh.source != nullptr && mesh.source->topology == detail::topology_hash(mesh);
+}
+
+bool has_extension(const FileFormat& format, std::string_view extension) {
+  return std::count(format.extensions.begin(), format.extensions.end(), extension) > 0;
+}
+
+std::string written_extensions() {
+  std::string list;
+  for (const FileFormat* format : detail::file_formats())
+    if (format->write_new != nullptr && list.find(format->extensions.front()) == list.npos)
+      list += fmt::format("{}{}", list.empty() ? "" : ", ", format->extensions.front());
+  return list;
+}
+
+const FileFormat& choose_format(const Mesh& mesh, const std::filesystem::path& path,
+                                const WriteOptions& options) {
+  if (options.format && *options.format != MeshFormat::none)
+    return detail::file_format(*options.format);
+  const std::string extension = detail::lower_extension(path);
+  if (mesh.source != nullptr) {
+    const FileFormat& own = detail::file_format(mesh.format);
+    // Whatever a file was called when it was read it may be called when it is written.
+    const bool is_own = has_extension(own, extension) ||
+                        extension == detail::lower_extension(mesh.source->file.path);
+    if (is_own && (is_as_read(mesh) || own.write_new != nullptr)) return own;
+  }
+  for (const FileFormat* format : detail::file_formats())
+    if (has_extension(*format, extension) && format->write_new != nullptr) return *format;
   throw InputError(fmt::format(
-      "{}: extension \"{}\" is not written from this mesh{}; use {} or .vtu", path.string(), end,
-      is_changed ? ", of which more than positions was changed" : "", usual));
+      "{}: extension \"{}\" is not written from this mesh{}; use one of {}", path.string(),
+      extension,
+      mesh.source != nullptr && !is_as_read(mesh) ? ", of which more than positions was changed"
+                                                  : "",
+      written_extensions()));
+}
+
+void require_encoding(const FileFormat& format, Encoding encoding,
+                      const std::filesystem::path& path) {
+  if (std::count(format.encodings.begin(), format.encodings.end(), encoding) > 0) return;
+  throw InputError(fmt::format("{}: {} files are not written in {}; leave the choice out",
+                               path.string(), name(format.format),
+                               encoding == Encoding::text ? "text" : "binary"));
 }
 
 // Refuses what cannot be written whatever the positions are.
-Writer choose_writer(const Mesh& mesh, const std::filesystem::path& path) {
-  const Writer writer =
-      extension(path) == ".vtu" ? Writer::vtu : writer_of_msh_or_source_format(mesh, path);
-  if (writer == Writer::vtu) check_for_vtu(mesh, path);
-  if (writer == Writer::new_msh4) check_for_msh4(mesh, path);
-  return writer;
+WritePlan make_plan(const Mesh& mesh, const std::filesystem::path& path,
+                    const WriteOptions& options) {
+  WritePlan plan{&choose_format(mesh, path, options), false, options};
+  if (is_as_read(mesh) && plan.format->format == mesh.format) {
+    const bool is_text = mesh.source->coordinates == detail::NumberFormat::text;
+    const Encoding encoding = is_text ? Encoding::text : Encoding::binary;
+    plan.copies_source = options.encoding.value_or(encoding) == encoding;
+  }
+  if (plan.copies_source) return plan;
+  if (plan.format->write_new == nullptr)
+    throw InputError(fmt::format("{}: {} is only written from a mesh that was read as {}; use .msh",
+                                 path.string(), name(plan.format->format),
+                                 name(plan.format->format)));
+  plan.options.encoding = options.encoding.value_or(plan.format->encodings.front());
+  require_encoding(*plan.format, *plan.options.encoding, path);
+  detail::check_arrays(mesh, path);
+  plan.format->check_new(mesh, path);
+  return plan;
+}
+
+void check_fields(const Mesh& mesh, const std::filesystem::path& path,
+                  const std::vector<PointField>& fields) {
+  for (const PointField& field : fields)
+    if (field.n_components < 1 ||
+        field.values.size() != mesh.nodes.size() * static_cast<std::size_t>(field.n_components))
+      throw InputError(fmt::format("{}: field {} has {} values where {} nodes with {} each are due",
+                                   path.string(), field.name, field.values.size(), mesh.n_nodes(),
+                                   field.n_components));
 }
 
 void check_finite(const Mesh& mesh, const std::filesystem::path& path) {
@@ -161,38 +109,65 @@ void check_finite(const Mesh& mesh, const std::filesystem::path& path) {
                       path.string(), i < mesh.node_tags.size() ? mesh.node_tags[i] : Tag(i)));
 }
 
-void write_with(Writer writer, const Mesh& mesh, const std::vector<PointField>& fields,
-                OutputFile& output) {
-  switch (writer) {
-    case Writer::patch:
-      return write_patched(mesh, output);
-    case Writer::patch_stl:
-      return write_patched_stl(mesh, output);
-    case Writer::new_msh4:
-      return write_new_msh4(mesh, output);
-    case Writer::vtu:
-      return write_vtu(mesh, fields, output);
-  }
+std::ptrdiff_t n_named(const Mesh& mesh) {
+  return std::count_if(mesh.groups.begin(), mesh.groups.end(),
+                       [](const PhysicalGroup& group) { return !group.name.empty(); });
+}
+
+bool has_element_in_several_groups(const Mesh& mesh) {
+  return std::any_of(mesh.blocks.begin(), mesh.blocks.end(), [](const ElementBlock& block) {
+    return block.size() > 0 && block.physical_groups.size() > 1;
+  });
+}
+
+// Numbers that are not 1, 2, 3, ... in the order of the arrays.
+bool has_own_numbers(const Mesh& mesh) {
+  for (std::size_t i = 0; i < mesh.node_tags.size(); ++i)
+    if (mesh.node_tags[i] != static_cast<Tag>(i) + 1) return true;
+  return false;
 }
 
 }  // namespace
-}  // namespace detail
 
 Mesh read_mesh(const std::filesystem::path& path) {
   try {
-    return detail::read_by_content(detail::read_file(path));
+    detail::FileBytes file = detail::read_file(path);
+    const FileFormat& format = detail::recognize(file);
+    return format.read(std::move(file));
   } catch (const std::bad_alloc&) {
     throw InputError(path.string() + ": too little memory to read it; free some or split the mesh");
   }
 }
 
-void write_mesh(const Mesh& mesh, const std::filesystem::path& path,
-                const std::vector<PointField>& fields) {
-  const detail::Writer writer = detail::choose_writer(mesh, path);
-  detail::check_finite(mesh, path);
+void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const WriteOptions& options) {
+  const WritePlan plan = make_plan(mesh, path, options);
+  check_fields(mesh, path, options.fields);
+  check_finite(mesh, path);
   detail::OutputFile output(path);
-  detail::write_with(writer, mesh, fields, output);
+  if (plan.copies_source)
+    plan.format->write_patched(mesh, output);
+  else
+    plan.format->write_new(mesh, plan.options, output);
   output.commit();
+}
+
+std::vector<std::string> conversion_losses(const Mesh& mesh, const std::filesystem::path& path,
+                                           const WriteOptions& options) {
+  const WritePlan plan = make_plan(mesh, path, options);
+  std::vector<std::string> losses;
+  if (plan.copies_source) return losses;
+  const detail::Holds& holds = plan.format->holds;
+  if (!mesh.groups.empty() && !holds.groups)
+    losses.push_back(fmt::format("{} physical groups", mesh.groups.size()));
+  if (n_named(mesh) > 0 && holds.groups && !holds.group_names)
+    losses.push_back(fmt::format("names of {} physical groups", n_named(mesh)));
+  if (has_element_in_several_groups(mesh) && holds.groups && !holds.several_groups)
+    losses.emplace_back("all but the first group of elements in several");
+  if (!mesh.periodic_links.empty() && !holds.periodic_links)
+    losses.push_back(fmt::format("{} periodic links", mesh.periodic_links.size()));
+  if (has_own_numbers(mesh) && !holds.tags) losses.emplace_back("numbers of nodes and elements");
+  if (mesh.source != nullptr) losses.emplace_back("comments and data of the input file");
+  return losses;
 }
 
 void write_text(const std::string& text, const std::filesystem::path& path) {
@@ -201,8 +176,9 @@ void write_text(const std::string& text, const std::filesystem::path& path) {
   output.commit();
 }
 
-void check_output(const Mesh& mesh, const std::filesystem::path& path) {
-  detail::choose_writer(mesh, path);
+void check_output(const Mesh& mesh, const std::filesystem::path& path,
+                  const WriteOptions& options) {
+  make_plan(mesh, path, options);
   check_text_output(path);
 }
 

@@ -11,6 +11,7 @@
 
 #include "roughmesh/error.hpp"
 #include "roughmesh/mesh.hpp"
+#include "roughmesh/mesh_io.hpp"
 
 #include "mesh_source.hpp"
 
@@ -30,8 +31,6 @@ T reverse_bytes(T value) {
 }
 
 inline bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
-
-enum class Encoding { text, binary };
 
 /// A position in the bytes of a file. The numbers of a binary file are read as bytes by integer(),
 /// size() and real(), in the file's byte order; text_integer() and text_real() read text in any

@@ -33,11 +33,11 @@ void expect_same_refusal(const Mesh& mesh, const std::filesystem::path& path,
 TEST(CheckOutput, RefusesWhatWriteMeshRefuses) {
   const test::TemporaryFolder folder;
   const Mesh mesh = test::plate(1);
-  expect_same_refusal(mesh, folder / "a.obj", "extension \".obj\"");
+  expect_same_refusal(mesh, folder / "a.doc", "extension \".doc\"");
   expect_same_refusal(mesh, folder / "missing/a.msh", "make the folder first");
   std::filesystem::create_directory(folder / "b.msh");
   expect_same_refusal(mesh, folder / "b.msh", "Is a directory");
-  expect_same_refusal(test::zoo(), folder / "a.vtu", "cannot be written to VTU");
+  expect_same_refusal(test::zoo(), folder / "a.vtu", "cannot be written to this format");
   expect_same_refusal(Mesh(), folder / "a.msh", "without nodes");
   EXPECT_EQ(folder.n_files(), 1);  // the folder b.msh
 }
@@ -47,9 +47,8 @@ TEST(CheckOutput, RefusesAFormatThatAChangedMeshCannotHave) {
   test::write_bytes(folder / "a.ply2", "3 1\n0 0 0 1 0 0 0 1 0\n3 0 1 2");
   Mesh mesh = read_mesh(folder / "a.ply2");
   EXPECT_NO_THROW(check_output(mesh, folder / "a.ply2"));
-  expect_same_refusal(mesh, folder / "b.stl", "use .ply2 or .vtu");
   mesh.blocks[0].nodes = {0, 2, 1};
-  expect_same_refusal(mesh, folder / "a.ply2", "use .msh or .vtu");
+  expect_same_refusal(mesh, folder / "a.ply2", "use one of .msh");
 }
 
 TEST(CheckOutput, LeavesNothingWhereItSucceeds) {

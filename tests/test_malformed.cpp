@@ -254,7 +254,7 @@ void add_others(std::vector<Case>& cases) {
   cases.push_back({"spaces", "a.msh", " \n\n ", Kind::format_error, "$MeshFormat"});
   cases.push_back({"script", "evil.msh",
                    "SystemCall \"touch /tmp/roughmesh-was-here\";\nPoint(1) = {0,0,0};",
-                   Kind::format_error, "geometry script"});
+                   Kind::format_error, "called .geo"});
   cases.push_back({"script_with_dollar", "evil.msh", "$x = 1;\nSystemCall \"ls\";"});
   cases.push_back({"noise_msh", "a.msh", noise(1000)});
   cases.push_back({"noise_stl", "a.stl", noise(1000)});

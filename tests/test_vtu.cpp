@@ -70,7 +70,7 @@ TEST(Vtu, IsReadByMeshioWithEveryShapeAndGroup) {
     height.values.push_back(0.5 * i);
     for (int k = 0; k < 3; ++k) displacement.values.push_back(i + 0.25 * k);
   }
-  write_mesh(mesh, folder / "a.vtu", {height, displacement});
+  write_mesh(mesh, folder / "a.vtu", {.fields = {height, displacement}});
   const std::string seen = seen_by_meshio(folder, folder / "a.vtu");
   EXPECT_EQ(seen.substr(0, seen.find("['")), expected_from_meshio(mesh));
   EXPECT_NE(seen.find("displacement [[0.0, 0.25, 0.5], [1.0, 1.25, 1.5]"), std::string::npos)
@@ -104,7 +104,9 @@ TEST(Vtu, RefusesElementsOfHigherOrder) {
 
 TEST(Vtu, RefusesFieldsOfTheWrongLength) {
   const test::TemporaryFolder folder;
-  EXPECT_THROW(write_mesh(test::plate(1), folder / "a.vtu", {{"z", 1, {1, 2, 3}}}), InputError);
-  EXPECT_THROW(write_mesh(test::plate(1), folder / "a.vtu", {{"z", 0, {}}}), InputError);
+  EXPECT_THROW(write_mesh(test::plate(1), folder / "a.vtu", {.fields = {{"z", 1, {1, 2, 3}}}}),
+               InputError);
+  EXPECT_THROW(write_mesh(test::plate(1), folder / "a.vtu", {.fields = {{"z", 0, {}}}}),
+               InputError);
   EXPECT_EQ(folder.n_files(), 0);
 }

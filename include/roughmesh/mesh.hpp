@@ -78,10 +78,25 @@ struct PeriodicLink {
   std::vector<std::pair<Index, Index>> nodes;  ///< (slave, master), positions in Mesh::nodes
 };
 
-enum class MeshFormat : std::uint8_t { none, msh2, msh4, stl, ply2, vtu };
+enum class MeshFormat : std::uint8_t {
+  none,  ///< a mesh made in memory
+  msh2,
+  msh4,
+  stl,
+  ply,
+  ply2,
+  obj,
+  off,
+  abaqus,
+  nastran,
+  unv,
+  medit,
+  su2,
+  vtk,  ///< legacy VTK
+  vtu
+};
 
-std::string name(
-    MeshFormat format);  ///< "msh2", "msh4", "stl", "ply2", "vtu"; "none" for a mesh made in memory
+std::string name(MeshFormat format);  ///< "msh2", ..., "vtu"; "none" for a mesh made in memory
 
 /// The bytes a mesh was read from and where each coordinate stands in them; made by read_mesh.
 class MeshSource;

@@ -3,7 +3,9 @@
 // (docs/files.md).
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,9 +14,9 @@
 
 namespace roughmesh {
 
-/// Reads MSH 2.2 and 4.1 (ASCII, binary, either byte order), STL (ASCII, binary) and PLY2. The kind
-/// of file is told by its content; the extension decides only where the content leaves it open
-/// (PLY2). Corners of an STL at exactly equal positions become one node.
+/// Reads every format of MeshFormat but VTU, in each of its encodings (docs/files.md). The kind of
+/// file is told by its content; the extension decides only where the content leaves it open (OBJ,
+/// PLY2, bulk data). Corners of an STL at exactly equal positions become one node.
 ///
 /// @throws InputError   missing, unreadable, a directory, or of a kind that roughmesh does not read
 /// @throws FormatError  cut short, wrong counts, dangling node numbers, NaN: file, line or byte,
@@ -28,19 +30,34 @@ struct PointField {
   std::vector<double> values;  ///< n_nodes * n_components, node by node
 };
 
-/// Writes the mesh. Where only positions differ from what read_mesh returned, `path` has the
-/// extension of that file or of its format: the bytes of the source are copied and only the numbers
-/// of nodes whose position changed are replaced (shortest decimals that read back exactly in ASCII
-/// files); facet normals of an STL are computed anew. A mesh changed in any other way, or made in
-/// memory, is written anew from its arrays as MSH 4.1 text (".msh" only). ".vtu" is written from
-/// the arrays of any mesh, with `fields`.
+enum class Encoding : std::uint8_t { text, binary };
+
+struct WriteOptions {
+  std::vector<PointField> fields = {};    ///< for formats that carry them, else left out
+  std::optional<MeshFormat> format = {};  ///< default: by extension; .msh stays what it was
+  std::optional<Encoding> encoding = {};  ///< default: that of the source, else the usual one
+};
+
+/// Writes the mesh. Where only positions differ from what read_mesh returned, and format and
+/// encoding are those of that file: the bytes of the source are copied and only the numbers of
+/// nodes whose position changed are replaced (shortest decimals that read back exactly in ASCII
+/// files); what depends on them, like facet normals of an STL, is computed anew. Any other mesh is
+/// written anew from its arrays, as far as the format holds it: conversion_losses() tells what is
+/// left behind.
 ///
 /// The file appears whole or not at all: it is written beside `path` and renamed. `path` may be the
 /// file the mesh was read from.
 ///
-/// @throws InputError  unknown or unsupported extension, no permission, full disk
+/// @throws InputError  unknown extension; elements that the format lacks or that are not written
+///                     anew in it; no permission, full disk
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path,
-                const std::vector<PointField>& fields = {});
+                const WriteOptions& options = {});
+
+/// What a file at `path` would not hold of the mesh (docs/files.md): one phrase each, such as
+/// "periodic links" or "names of 3 groups". Empty when the source is copied.
+/// @throws InputError  as write_mesh would, before anything is written
+std::vector<std::string> conversion_losses(const Mesh& mesh, const std::filesystem::path& path,
+                                           const WriteOptions& options = {});
 
 /// Writes text the same way: whole or not at all. For reports beside meshes.
 void write_text(const std::string& text, const std::filesystem::path& path);
@@ -50,7 +67,8 @@ void write_text(const std::string& text, const std::filesystem::path& path);
 ///
 /// @throws InputError  as write_mesh would: extension, elements that the format lacks, missing
 /// folder, no permission, a directory
-void check_output(const Mesh& mesh, const std::filesystem::path& path);
+void check_output(const Mesh& mesh, const std::filesystem::path& path,
+                  const WriteOptions& options = {});
 
 /// Likewise for write_text.
 void check_text_output(const std::filesystem::path& path);

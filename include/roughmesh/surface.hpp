@@ -32,6 +32,7 @@ struct MeshSize {
 /// by position, whatever numbers and order the file has. All that is random or computed on the
 /// surface is indexed by point.
 struct Surface {
+  int dimension = 2;          ///< 2: faces of a 3-D mesh; 1: lines of a planar one
   std::vector<Vec3> points;   ///< n positions, canonical order
   std::vector<Vec3> normals;  ///< n unit vectors, outward (docs/math.md, eq. 2)
   std::vector<double> areas;  ///< n node areas; they add up to `area`
