@@ -56,12 +56,6 @@ void print_groups(const Mesh& mesh) {
                surface_size(mesh, group));
 }
 
-std::string list_of(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& each : names) text += (text.empty() ? "" : ", ") + each;
-  return text;
-}
-
 void print_surface(const Surface& surface, const std::string& unit) {
   const MeshSize& h = surface.mesh_size;
   fmt::print("\nsurface {}\n", list_of(surface.groups));

@@ -170,6 +170,12 @@ std::vector<std::string> conversion_losses(const Mesh& mesh, const std::filesyst
   return losses;
 }
 
+bool carries_fields(const Mesh& mesh, const std::filesystem::path& path,
+                    const WriteOptions& options) {
+  const WritePlan plan = make_plan(mesh, path, options);
+  return !plan.copies_source && plan.format->holds.point_fields;
+}
+
 void write_text(const std::string& text, const std::filesystem::path& path) {
   detail::OutputFile output(path);
   output.write(text);

@@ -2,6 +2,7 @@
 #include "roughmesh/options.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -12,6 +13,7 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include "json_numbers.hpp"
 #include "options_json.hpp"
 
 namespace roughmesh {
@@ -35,9 +37,7 @@ json toml_to_json(const toml::node& node, const std::string& source) {
   if (const auto* number = node.as_integer()) return number->get();
   if (const auto* truth = node.as_boolean()) return truth->get();
   if (const auto* number = node.as_floating_point()) {
-    // JSON holds no infinity; the reader of options takes the text.
-    if (std::isinf(number->get()) && number->get() > 0) return "inf";
-    return number->get();
+    return detail::number_to_json(number->get());
   }
   throw InputError(fmt::format("{}: dates and times are no option values", source));
 }
@@ -164,6 +164,7 @@ void check_roughness(const Roughness& o) {
           "above 0 and at most 180 degrees");
   require(std::isfinite(o.angle), "--angle", o.angle, "a finite number of degrees");
   check_lengths(o);
+  mask_options(o);
   // Throws for a parameter that is missing, foreign to the family or out of range.
   Autocorrelation{autocorrelation_options(o)};
 }
@@ -274,6 +275,35 @@ SurfaceOptions surface_options(const Roughness& o) {
 
 FieldOptions field_options(const RoughenOptions& o) {
   return {.method = method_from_name(o.method), .tolerance = o.tolerance};
+}
+
+namespace {
+
+Fade parse_fade(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  const std::string number = text.substr(0, colon);
+  Fade fade{.width = 0, .group = colon == text.npos ? "" : text.substr(colon + 1)};
+  const char* const end = number.data() + number.size();
+  const auto [stop, error] = std::from_chars(number.data(), end, fade.width);
+  if (error != std::errc() || stop != end || !(fade.width > 0) || !std::isfinite(fade.width) ||
+      (colon != text.npos && fade.group.empty()))
+    throw InputError(
+        fmt::format("--fade: {}; must be a positive WIDTH or WIDTH:GROUP, such as 0.5:inlet", text));
+  return fade;
+}
+
+}  // namespace
+
+MaskOptions mask_options(const Roughness& o) {
+  MaskOptions options;
+  options.fixed = o.fixed;
+  for (const std::string& text : o.fade) options.fade.push_back(parse_fade(text));
+  for (const Mask& mask : o.mask) {
+    if (const auto* box = std::get_if<BoxMask>(&mask)) options.boxes.push_back(*box);
+    if (const auto* sphere = std::get_if<SphereMask>(&mask)) options.spheres.push_back(*sphere);
+    if (const auto* formula = std::get_if<FormulaMask>(&mask)) options.formulas.push_back(*formula);
+  }
+  return options;
 }
 
 WriteOptions write_options(const RoughenOptions& o) {

@@ -8,6 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "json_numbers.hpp"
+#include "mask_json.hpp"
+
 namespace roughmesh::detail {
 namespace {
 
@@ -19,16 +22,10 @@ struct WrongType {
   std::string expected;
 };
 
-// JSON has no infinity; a streak's length is the string "inf".
-ordered_json number_to_json(double value) {
-  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
-  return value;
-}
-
-double number_from_json(const json& value) {
-  if (value.is_string() && value == "inf") return std::numeric_limits<double>::infinity();
-  if (!value.is_number()) throw WrongType{"a number"};
-  return value.get<double>();
+double require_number(const json& value) {
+  const std::optional<double> number = number_from_json(value);
+  if (!number) throw WrongType{"a number"};
+  return *number;
 }
 
 ordered_json to_json_value(const std::string& value) { return value; }
@@ -43,6 +40,11 @@ ordered_json to_json_value(const std::vector<std::string>& value) { return value
 ordered_json to_json_value(const std::vector<double>& value) {
   ordered_json list = ordered_json::array();
   for (const double number : value) list.push_back(number_to_json(number));
+  return list;
+}
+ordered_json to_json_value(const std::vector<Mask>& value) {
+  ordered_json list = ordered_json::array();
+  for (const Mask& mask : value) list.push_back(mask_to_json(mask));
   return list;
 }
 template <class Enum>
@@ -72,14 +74,14 @@ void from_json_value(const json& value, std::uint64_t& target) {
   if (!fits) throw WrongType{"a whole number from 0 on"};
   target = value.get<std::uint64_t>();
 }
-void from_json_value(const json& value, double& target) { target = number_from_json(value); }
+void from_json_value(const json& value, double& target) { target = require_number(value); }
 void from_json_value(const json& value, std::optional<double>& target) {
-  target = value.is_null() ? std::nullopt : std::optional(number_from_json(value));
+  target = value.is_null() ? std::nullopt : std::optional(require_number(value));
 }
 void from_json_value(const json& value, std::vector<std::string>& target) {
   target.clear();
   const auto add = [&](const json& item) {
-    if (!item.is_string() && !item.is_number_integer())
+    if (!item.is_string() && !item.is_number())
       throw WrongType{"a list of names or numbers"};
     target.push_back(item.is_string() ? item.get<std::string>() : item.dump());
   };
@@ -88,8 +90,17 @@ void from_json_value(const json& value, std::vector<std::string>& target) {
 }
 void from_json_value(const json& value, std::vector<double>& target) {
   target.clear();
-  if (!value.is_array()) return target.push_back(number_from_json(value));
-  for (const json& item : value) target.push_back(number_from_json(item));
+  if (!value.is_array()) return target.push_back(require_number(value));
+  for (const json& item : value) target.push_back(require_number(item));
+}
+void from_json_value(const json& value, std::vector<Mask>& target) {
+  if (!value.is_array()) throw WrongType{"tables, written [[mask]] in TOML"};
+  target.clear();
+  try {
+    for (const json& table : value) target.push_back(mask_from_json(table));
+  } catch (const WrongMask& wrong) {
+    throw WrongType{wrong.what()};
+  }
 }
 template <class Enum>
 requires std::is_enum_v<Enum>

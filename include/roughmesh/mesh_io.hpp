@@ -59,6 +59,11 @@ void write_mesh(const Mesh& mesh, const std::filesystem::path& path,
 std::vector<std::string> conversion_losses(const Mesh& mesh, const std::filesystem::path& path,
                                            const WriteOptions& options = {});
 
+/// Would write_mesh() put WriteOptions::fields into a file at `path`?
+/// @throws InputError  as write_mesh would, before anything is written
+bool carries_fields(const Mesh& mesh, const std::filesystem::path& path,
+                    const WriteOptions& options = {});
+
 /// Writes text the same way: whole or not at all. For reports beside meshes.
 void write_text(const std::string& text, const std::filesystem::path& path);
 

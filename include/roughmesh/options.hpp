@@ -8,12 +8,15 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "roughmesh/autocorrelation.hpp"
 #include "roughmesh/distance.hpp"
 #include "roughmesh/error.hpp"
+#include "roughmesh/cad.hpp"
 #include "roughmesh/field.hpp"
+#include "roughmesh/mask.hpp"
 #include "roughmesh/mesh_io.hpp"
 #include "roughmesh/surface.hpp"
 
@@ -26,6 +29,9 @@ enum class VolumeChoice {
 };
 
 std::string_view name(VolumeChoice choice);
+
+/// A mask of a job file.
+using Mask = std::variant<BoxMask, SphereMask, FormulaMask>;
 
 /// How one surface becomes rough. Lengths are in the unit of the mesh, angles in degrees (they are
 /// typed by people).
@@ -44,7 +50,8 @@ struct Roughness {
   double edge_angle = 40;
   bool flip = false;
   std::vector<std::string> fixed = {};
-  std::vector<std::string> fade = {};
+  std::vector<std::string> fade = {};  ///< "WIDTH" or "WIDTH:GROUP"
+  std::vector<Mask> mask = {};
 };
 
 /// A whole run. Job files may give `surfaces` as several tables; the command line describes one.
@@ -132,6 +139,7 @@ void for_each_surface_option(Options& o, Visit&& visit) {
                    "heights fall to zero over WIDTH towards the border of the surface, or towards "
                    "GROUP; repeatable"},
         o.fade);
+  visit(OptionText{"mask", "", "weights by box, sphere or formula; job files only"}, o.mask);
 }
 
 /// Likewise for every option that says how files are read and written.
@@ -237,8 +245,10 @@ std::string report_path(const RoughenOptions& options);
 // What the stages need, taken from the options.
 AutocorrelationOptions autocorrelation_options(const Roughness& roughness);
 SurfaceOptions surface_options(const Roughness& roughness);
+MaskOptions mask_options(const Roughness& roughness);  ///< @throws InputError  a fade without width
 FieldOptions field_options(const RoughenOptions& options);
 WriteOptions write_options(const RoughenOptions& options);
+GeometryOptions geometry_options(const RoughenOptions& options);
 
 /// May two surfaces of a run carry one field, evaluated on both? True where all that the field
 /// depends on is equal: seed, autocorrelation, distance.
