@@ -10,16 +10,18 @@
 namespace roughmesh::detail {
 
 /// Sharp edges, edges of many faces, faces that count once.
-void warn_of_surface(Report& report, const Surface& surface);
+void warn_of_surface(Report& report, const Surface& surface, const Roughness& request);
 
-/// Roughness that the mesh, the numbers of its file or its size cannot carry; report.resolution is
+/// Roughness that the mesh, the numbers of its file or its size cannot carry; surface.resolution is
 /// set.
-void warn_of_scale(Report& report, const Mesh& mesh, const Surface& surface);
+void warn_of_scale(Report& report, const Mesh& mesh, const SurfaceReport& surface,
+                   const Roughness& request);
 
-/// A covariance beyond the tolerance, clipped eigenvalues; report.audit and report.field are set.
-void warn_of_field(Report& report);
+/// Covariances beyond the tolerance, clipped eigenvalues; audit and field of report.surfaces are
+/// set.
+void warn_of_fields(Report& report);
 
-/// Nodes of the surface on faces that stay.
-void warn_of_walls(Report& report, const VolumeMover& mover);
+/// Nodes of the surfaces on faces that stay, and curved elements, which are checked at corners only.
+void warn_of_volume(Report& report, const Mesh& mesh, const VolumeMover& mover);
 
 }  // namespace roughmesh::detail
