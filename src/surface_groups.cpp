@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The elements that a list of physical groups means.
 #include <algorithm>
-#include <charconv>
 #include <optional>
 
 #include <fmt/format.h>
 
+#include "group_lookup.hpp"
 #include "messages.hpp"
 #include "surface_faces.hpp"
 #include "volume_faces.hpp"
@@ -14,7 +14,6 @@ namespace roughmesh::detail {
 namespace {
 
 constexpr int surface_dimension = 2;
-constexpr std::size_t most_listed = 10;
 
 bool is_surface(const ElementBlock& block) {
   return block.size() > 0 && dimension(block.type.shape) == surface_dimension;
@@ -24,67 +23,28 @@ bool contains(std::span<const Tag> tags, Tag tag) {
   return std::find(tags.begin(), tags.end(), tag) != tags.end();
 }
 
-bool has_elements(const Mesh& mesh, Tag group) {
-  return std::any_of(mesh.blocks.begin(), mesh.blocks.end(), [&](const ElementBlock& block) {
-    return is_surface(block) && contains(block.physical_groups, group);
-  });
-}
-
-std::string label(const PhysicalGroup& group) {
-  if (group.name.empty()) return std::to_string(group.tag);
-  return fmt::format("{} ({})", group.name, group.tag);
-}
-
 std::vector<PhysicalGroup> surface_groups(const Mesh& mesh) {
   std::vector<PhysicalGroup> groups;
   for (const PhysicalGroup& group : mesh.groups)
-    if (group.dimension == surface_dimension && has_elements(mesh, group.tag))
-      groups.push_back(group);
+    if (group.dimension == surface_dimension && has_elements(mesh, group)) groups.push_back(group);
   return groups;
 }
 
 std::string list_of_choices(const Mesh& mesh) {
   const std::vector<PhysicalGroup> groups = surface_groups(mesh);
   if (groups.empty()) return "the mesh has no surface group; leave the group out or use all";
-  std::string list = "surface groups: ";
-  for (std::size_t i = 0; i < std::min(groups.size(), most_listed); ++i)
-    list += (i > 0 ? ", " : "") + label(groups[i]);
-  if (groups.size() > most_listed) list += fmt::format(" and {} more", groups.size() - most_listed);
-  return list;
-}
-
-std::optional<Tag> number(const std::string& text) {
-  Tag value = 0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  const bool digits_only = !text.empty() && text.front() != '-' && stop == end;
-  return digits_only && error == std::errc{} ? std::optional(value) : std::nullopt;
-}
-
-// The group with exactly this name, else with this number; of dimension 2 if there is one.
-std::optional<PhysicalGroup> find_group(const Mesh& mesh, const std::string& text) {
-  const auto best = [&](auto&& matches) -> std::optional<PhysicalGroup> {
-    std::optional<PhysicalGroup> found;
-    for (const PhysicalGroup& group : mesh.groups)
-      if (matches(group) && (!found || (group.dimension == surface_dimension &&
-                                        found->dimension != surface_dimension)))
-        found = group;
-    return found;
-  };
-  auto named = best([&](const PhysicalGroup& g) { return g.name == text; });
-  if (named || !number(text)) return named;
-  return best([tag = *number(text)](const PhysicalGroup& g) { return g.tag == tag; });
+  return "surface groups: " + list_of_labels(groups);
 }
 
 PhysicalGroup require_group(const Mesh& mesh, const std::string& text) {
-  const auto group = text.empty() ? std::nullopt : find_group(mesh, text);
+  const auto group = text.empty() ? std::nullopt : find_group(mesh, text, surface_dimension);
   if (!group)
     throw InputError(
         fmt::format("there is no physical group '{}'; {}", text, list_of_choices(mesh)));
   if (group->dimension != surface_dimension)
     throw InputError(fmt::format("physical group '{}' has dimension {}, not 2; {}", text,
                                  group->dimension, list_of_choices(mesh)));
-  if (!has_elements(mesh, group->tag))
+  if (!has_elements(mesh, *group))
     throw InputError(
         fmt::format("physical group '{}' has no element; {}", text, list_of_choices(mesh)));
   return *group;
@@ -124,7 +84,7 @@ Choice make_choice(const Mesh& mesh, std::span<const std::string> texts) {
   if (texts.empty()) return default_choice(mesh);
   Choice choice;
   for (const std::string& text : texts) {
-    const auto group = find_group(mesh, text);
+    const auto group = find_group(mesh, text, surface_dimension);
     if (text == "all" && (!group || group->dimension != surface_dimension)) return everything(mesh);
     choice.add(require_group(mesh, text));
   }
