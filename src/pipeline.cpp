@@ -68,7 +68,7 @@ std::vector<std::string> cited_works(const FieldSampler& sampler, const Autocorr
 void describe_surface(Report& report, const Surface& surface) {
   report.surface_groups = surface.groups;
   report.surface_nodes = surface.n_points();
-  report.surface_elements = surface.n_faces();
+  report.surface_elements = surface.n_elements;
   report.surface_area = surface.area;
   report.mesh_size = surface.mesh_size;
   report.surface_components = surface.n_components;
@@ -161,8 +161,9 @@ Report roughen(const Mesh& mesh, const RoughenOptions& options, const Deliver& d
   detail::warn_of_surface(report, surface);
   detail::warn_of_scale(report, mesh, surface);
 
+  const std::span surfaces(&surface, 1);
   const VolumeMover mover =
-      timed(t.volume, [&] { return VolumeMover(mesh, surface, volume_method(options)); });
+      timed(t.volume, [&] { return VolumeMover(mesh, surfaces, volume_method(options)); });
   detail::warn_of_walls(report, mover);
   const double quality_before = timed(t.check, [&] { return min_quality(mesh); });
 
@@ -181,10 +182,11 @@ Report roughen(const Mesh& mesh, const RoughenOptions& options, const Deliver& d
     const std::vector<double> heights =
         timed(t.field, [&] { return heights_of(sampler, options, rough.realization); });
     const std::vector<Vec3> displacements =
-        timed(t.displace, [&] { return displace(surface, heights); });
+        timed(t.displace, [&] { return displace_nodes(surfaces, {&heights, 1}); });
     rough.mesh.nodes = timed(t.volume, [&] { return mover.move(displacements); });
     rough.check = timed(t.check, [&] { return check_mesh(mesh, rough.mesh.nodes); });
     refuse_invalid(rough, remedy(rho, mover), report);
+    if (k == 0) detail::warn_of_curved_elements(report, rough.check);
 
     rough.heights = at_nodes<double>(mesh, surface, heights, 0.0);
     rough.displacements = differences(rough.mesh.nodes, mesh.nodes);

@@ -2,6 +2,7 @@
 // What a run tells its user without being asked: one line each, into report.warnings.
 #pragma once
 
+#include "roughmesh/check.hpp"
 #include "roughmesh/mesh.hpp"
 #include "roughmesh/move_volume.hpp"
 #include "roughmesh/report.hpp"
@@ -18,6 +19,9 @@ void warn_of_scale(Report& report, const Mesh& mesh, const Surface& surface);
 
 /// A covariance beyond the tolerance, clipped eigenvalues; report.audit and report.field are set.
 void warn_of_field(Report& report);
+
+/// Elements whose curved sides nothing looked at.
+void warn_of_curved_elements(Report& report, const MeshCheck& check);
 
 /// Nodes of the surface on faces that stay.
 void warn_of_walls(Report& report, const VolumeMover& mover);
