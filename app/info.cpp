@@ -35,13 +35,19 @@ std::int64_t n_elements_in(const Mesh& mesh, const PhysicalGroup& group) {
   return count;
 }
 
-/// Area and edge lengths of a surface group, or why it has none.
+const char* measure_of(const Surface& surface) { return surface.dimension == 1 ? "length" : "area"; }
+
+/// Area (of lines: length) and edge lengths of a group, or why it has none.
 std::string surface_size(const Mesh& mesh, const PhysicalGroup& group) {
-  if (group.dimension != 2) return "";
+  if (group.dimension != 1 && group.dimension != 2) return "";
+  if (group.dimension == 1 && dimension(mesh) > 2) return "";
+  const std::string choice = group.name.empty() ? std::to_string(group.tag) : group.name;
   try {
-    const Surface surface = select_surface(mesh, {.groups = {std::to_string(group.tag)}});
-    return fmt::format("  area {:.6g}  h {:.4g} ({:.4g} to {:.4g})", surface.area,
-                       surface.mesh_size.median, surface.mesh_size.min, surface.mesh_size.max);
+    const Surface surface = select_surface(mesh, {.groups = {choice}});
+    if (surface.dimension != group.dimension) return "";  // another group of that number is meant
+    return fmt::format("  {} {:.6g}  h {:.4g} ({:.4g} to {:.4g})", measure_of(surface),
+                       surface.area, surface.mesh_size.median, surface.mesh_size.min,
+                       surface.mesh_size.max);
   } catch (const InputError& error) {
     return fmt::format("  {}", error.what());
   }
@@ -58,21 +64,28 @@ void print_groups(const Mesh& mesh) {
 
 void print_surface(const Surface& surface, const std::string& unit) {
   const MeshSize& h = surface.mesh_size;
-  fmt::print("\nsurface {}\n", list_of(surface.groups));
-  fmt::print("  {:<34} {} points, {} faces, {} piece{}, {}\n", "size", surface.n_points(),
-             surface.n_faces(), surface.n_components, surface.n_components == 1 ? "" : "s",
-             surface.n_border_edges == 0
-                 ? "closed"
-                 : fmt::format("open ({} border edges)", surface.n_border_edges));
-  fmt::print("  {:<34} {:.6g} {}^2\n", "area", surface.area, unit);
-  fmt::print("  {:<34} {:.4g} {} (from {:.4g} to {:.4g})\n", "mesh size h (median edge)", h.median,
-             unit, h.min, h.max);
+  const bool is_curve = surface.dimension == 1;
+  fmt::print("\n{} {}\n", is_curve ? "curve" : "surface", list_of(surface.groups));
+  fmt::print("  {:<34} {} points, {} {}, {} piece{}, {}\n", "size", surface.n_points(),
+             surface.n_elements, is_curve ? "lines" : "faces", surface.n_components,
+             surface.n_components == 1 ? "" : "s",
+             surface.n_border_edges == 0 ? "closed"
+                                         : fmt::format("open ({} {})", surface.n_border_edges,
+                                                       is_curve ? "end points" : "border edges"));
+  fmt::print("  {:<34} {:.6g} {}{}\n", measure_of(surface), surface.area, unit,
+             is_curve ? "" : "^2");
+  fmt::print("  {:<34} {:.4g} {} (from {:.4g} to {:.4g})\n",
+             is_curve ? "mesh size h (median line)" : "mesh size h (median edge)", h.median, unit,
+             h.min, h.max);
   fmt::print("  {:<34} {:.4g} {}\n", "shortest correlation length 2.5 h",
              sizes_per_length * h.median, unit);
   if (surface.n_sharp_edges > 0)
-    fmt::print("  {:<34} {} (normals are averaged there)\n", "sharp edges", surface.n_sharp_edges);
+    fmt::print("  {:<34} {} (normals are averaged there)\n",
+               is_curve ? "sharp corners" : "sharp edges", surface.n_sharp_edges);
   if (surface.n_nonmanifold_edges > 0)
-    fmt::print("  {:<34} {}\n", "edges of three or more faces", surface.n_nonmanifold_edges);
+    fmt::print("  {:<34} {}\n",
+               is_curve ? "points of three or more lines" : "edges of three or more faces",
+               surface.n_nonmanifold_edges);
 }
 
 std::string optional_length(const std::optional<double>& value) {

@@ -170,7 +170,7 @@ class Run {
     const VolumeMover mover = timed(times().volume, [&] {
       return VolumeMover(mesh_, rough_.surfaces, volume_method(options_));
     });
-    detail::warn_of_volume(report_, mesh_, mover);
+    detail::warn_of_walls(report_, mover);
     quality_before_ = timed(times().check, [&] { return min_quality(mesh_); });
     prepare_fields();
     RoughMesh rough{.mesh = mesh_};
@@ -247,6 +247,7 @@ class Run {
     rough.mesh.nodes = timed(times().volume, [&] { return mover.move(displacements); });
     rough.check = timed(times().check, [&] { return check_mesh(mesh_, rough.mesh.nodes); });
     refuse_invalid(rough, remedy(rough_.fields, mover), report_);
+    if (report_.realizations.empty()) detail::warn_of_curved_elements(report_, rough.check);
     rough.heights = at_nodes<double>(
         mesh_, rough_.surfaces, [&](std::size_t s) -> const auto& { return heights[s]; }, 0.0);
     rough.displacements = differences(rough.mesh.nodes, mesh_.nodes);

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "parallel.hpp"
+#include "polygon.hpp"
 
 namespace roughmesh {
 namespace {
@@ -21,13 +22,13 @@ constexpr double largest_share_above_nyquist = 0.05;
 // and the spread of usual triangulations must not warn.
 constexpr double largest_edge_allowance = 2;
 
-// ---- What the faces have in common: sums over triangles ----
+// ---- What the faces have in common: sums over triangles, or lines ----
 
-// Sums over triangles, per unit of Rq.
+// Sums over triangles or lines, per unit of Rq.
 struct FaceSums {
   double area = 0;
   double slope_integral = 0;  ///< of the squared slope of the linear interpolant
-  double field_area = 0;      ///< area measured in units of the field's own decorrelation
+  double field_area = 0;      ///< area (or length) in units of the field's own decorrelation
   double stretch_area = 0;    ///< area times squared tangential stretch, 2 where isotropic
 };
 
@@ -66,6 +67,18 @@ FaceSums triangle_sums(const std::array<Vec3, 3>& x, const Autocorrelation& auto
   return sums;
 }
 
+// Along a line the interpolant has one slope (docs/math.md, eq. 39).
+FaceSums line_sums(const Vec3& a, const Vec3& b, const Autocorrelation& autocorrelation,
+                   const Distance& distance) {
+  FaceSums sums;
+  sums.area = (b - a).norm();
+  const double variogram = 2 * (1 - autocorrelation.rho(distance(a, b)));
+  sums.slope_integral = variogram / sums.area;
+  sums.field_area = std::sqrt(variogram);
+  sums.stretch_area = (distance.stretch() * (b - a)).squaredNorm() / sums.area;
+  return sums;
+}
+
 // Quadrangles count as the two triangles of a fan.
 FaceSums face_sums(const Surface& surface, const Autocorrelation& autocorrelation,
                    const Distance& distance) {
@@ -76,6 +89,9 @@ FaceSums face_sums(const Surface& surface, const Autocorrelation& autocorrelatio
     FaceSums& part = parts[begin / grain];
     for (std::size_t f = begin; f < end; ++f) {
       const auto face = surface.face(static_cast<Index>(f));
+      if (surface.dimension == 1)
+        part += line_sums(surface.points[face[0]], surface.points[face[1]], autocorrelation,
+                          distance);
       for (std::size_t k = 2; k < face.size(); ++k)
         part += triangle_sums(
             {surface.points[face[0]], surface.points[face[k - 1]], surface.points[face[k]]},
@@ -90,7 +106,8 @@ FaceSums face_sums(const Surface& surface, const Autocorrelation& autocorrelatio
 // ---- Largest height ----
 
 // Area and half the border of the surface, lengths being those of the field: the root mean square
-// difference of two heights (docs/math.md, eq. 24).
+// difference of two heights (docs/math.md, eq. 24). A curve has no area, and its whole length counts
+// as the half border of a surface does (eq. 39).
 struct FieldSize {
   double area = 0;
   double half_border = 0;
@@ -116,6 +133,12 @@ double half_border(const Surface& surface, const Autocorrelation& autocorrelatio
     first = next;
   }
   return sum / 2;
+}
+
+FieldSize field_size(const Surface& surface, const FaceSums& sums,
+                     const Autocorrelation& autocorrelation, const Distance& distance) {
+  if (surface.dimension == 1) return {0, sums.field_area};
+  return {sums.field_area, half_border(surface, autocorrelation, distance)};
 }
 
 // Number of independent patches at the level u: expected Euler characteristic of the part above u
@@ -153,9 +176,7 @@ std::vector<char> points_on_sharp_edges(const Surface& surface) {
   for (Index f = 0; f < surface.n_faces(); ++f) {
     corners.clear();
     for (const Index i : surface.face(f)) corners.push_back(surface.points[i]);
-    Vec3 normal = Vec3::Zero();
-    for (std::size_t k = 2; k < corners.size(); ++k)
-      normal += (corners[k - 1] - corners[0]).cross(corners[k] - corners[0]);
+    const Vec3 normal = detail::face_vector(corners, surface.plane_normal);
     for (const Index i : surface.face(f))
       if (surface.normals[i].dot(normal) < least_cosine * normal.norm()) is_sharp[i] = 1;
   }
@@ -248,8 +269,8 @@ Resolution assess_resolution(const Surface& surface, const Autocorrelation& auto
   }
   // rho along the axis of the shortest length, where everything is worst.
   const auto rho = [&](double r) { return autocorrelation.rho(largest_stretch * r); };
-  result.spectrum_share_above_nyquist =
-      autocorrelation.spectrum_share_above(std::numbers::pi / (h * largest_stretch), 2);
+  result.spectrum_share_above_nyquist = autocorrelation.spectrum_share_above(
+      std::numbers::pi / (h * largest_stretch), surface.dimension);
   result.interpolation_error = std::sqrt(std::max(0.0, 1 + (1 + rho(h)) / 2 - 2 * rho(h / 2)));
 
   const FaceSums sums = face_sums(surface, autocorrelation, distance);
@@ -257,7 +278,7 @@ Resolution assess_resolution(const Surface& surface, const Autocorrelation& auto
   if (const auto variance = autocorrelation.slope_variance())
     result.field_slope = std::sqrt(*variance * sums.stretch_area / sums.area);
   result.expected_max_height =
-      expected_max_height({sums.field_area, half_border(surface, autocorrelation, distance)},
+      expected_max_height(field_size(surface, sums, autocorrelation, distance),
                           static_cast<double>(surface.n_points()));
   const double curvature = largest_curvature(surface);
   result.min_curvature_radius = curvature > 0 ? 1 / curvature : infinity;

@@ -11,7 +11,7 @@ namespace roughmesh::detail {
 /// Fills `areas` and `area`.
 void measure_areas(Surface& surface);
 
-/// Fills `normals` with Max's weights (docs/math.md, eq. 2).
+/// Fills `normals` (docs/math.md, eq. 2; of a curve, eq. 35).
 /// @throws InputError  a point all of whose faces have no area or cancel
 void measure_normals(const Mesh& mesh, Surface& surface);
 

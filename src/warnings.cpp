@@ -20,6 +20,16 @@ void warn(Report& report, const std::vector<std::string>& groups, const std::str
     report.warnings.push_back(std::move(warning));
 }
 
+/// What a surface is made of.
+struct Words {
+  const char* faces;
+  const char* edges;
+};
+
+Words words_for(const Surface& surface) {
+  return surface.dimension == 1 ? Words{"lines", "corners"} : Words{"faces", "edges"};
+}
+
 void warn_of_field(Report& report, const SurfaceReport& surface) {
   if (surface.audit.covariance_error > report.request.tolerance)
     warn(report, surface.groups,
@@ -36,27 +46,27 @@ void warn_of_field(Report& report, const SurfaceReport& surface) {
 }  // namespace
 
 void warn_of_surface(Report& report, const Surface& surface, const Roughness& request) {
+  const Words words = words_for(surface);
   if (surface.n_sharp_edges > 0)
     warn(report, surface.groups,
-         fmt::format("{} sharp edges (more than {:g} degrees): their nodes move along averaged "
-                     "normals, which lowers the roughness there; round the edges for exact "
-                     "statistics",
-                     surface.n_sharp_edges, request.edge_angle));
+         fmt::format("{} sharp {} (more than {:g} degrees): their nodes move along averaged "
+                     "normals, which lowers the roughness there; round them for exact statistics",
+                     surface.n_sharp_edges, words.edges, request.edge_angle));
   if (surface.n_nonmanifold_edges > 0)
     warn(report, surface.groups,
-         fmt::format("{} edges join three or more faces: normals along them are a compromise; "
-                     "choose one --group at a time",
-                     surface.n_nonmanifold_edges));
+         fmt::format("{} {} join three or more {}: normals there are a compromise; choose one "
+                     "--group at a time",
+                     surface.n_nonmanifold_edges, words.edges, words.faces));
   if (surface.n_coincident_nodes > 0)
     warn(report, surface.groups,
-         fmt::format("{} nodes lie where nodes of the rough surface lie, but on none of its faces; "
-                     "they stay, so a gap opens or closes there; choose the faces of both sides if "
+         fmt::format("{} nodes lie where nodes of the rough surface lie, but on none of its {}; "
+                     "they stay, so a gap opens or closes there; choose the {} of both sides if "
                      "they belong together",
-                     surface.n_coincident_nodes));
+                     surface.n_coincident_nodes, words.faces, words.faces));
   if (surface.n_duplicate_faces > 0)
     warn(report, surface.groups,
-         fmt::format("{} faces stand on the nodes of another one and count once",
-                     surface.n_duplicate_faces));
+         fmt::format("{} {} stand on the nodes of another one and count once",
+                     surface.n_duplicate_faces, words.faces));
 }
 
 void warn_of_scale(Report& report, const Mesh& mesh, const SurfaceReport& surface,
@@ -91,19 +101,21 @@ void warn_of_fields(Report& report) {
   for (const SurfaceReport& surface : report.surfaces) warn_of_field(report, surface);
 }
 
-void warn_of_volume(Report& report, const Mesh& mesh, const VolumeMover& mover) {
+void warn_of_curved_elements(Report& report, const MeshCheck& check) {
+  if (check.n_curved > 0)
+    report.warnings.push_back(fmt::format(
+        "{} curved elements were checked at their corners only; look at them with the checks of "
+        "your solver, or use linear elements",
+        check.n_curved));
+}
+
+void warn_of_walls(Report& report, const VolumeMover& mover) {
   if (mover.n_wall_nodes() > 0)
     report.warnings.push_back(fmt::format(
         "{} nodes of the rough surface lie on faces that are not roughened; they move along the "
         "normals of the rough surface while the other nodes of those faces stay, so elements there "
         "invert first; --fade lets the roughness end before",
         mover.n_wall_nodes()));
-  const std::int64_t n_curved = n_curved_elements(mesh);
-  if (n_curved > 0)
-    report.warnings.push_back(
-        fmt::format("{} elements are curved: they are checked at their corners only, so one may "
-                    "still fold between them",
-                    n_curved));
 }
 
 }  // namespace roughmesh::detail

@@ -2,6 +2,7 @@
 // What a run tells its user without being asked: one line each, into report.warnings.
 #pragma once
 
+#include "roughmesh/check.hpp"
 #include "roughmesh/mesh.hpp"
 #include "roughmesh/move_volume.hpp"
 #include "roughmesh/report.hpp"
@@ -21,7 +22,10 @@ void warn_of_scale(Report& report, const Mesh& mesh, const SurfaceReport& surfac
 /// set.
 void warn_of_fields(Report& report);
 
-/// Nodes of the surfaces on faces that stay, and curved elements, which are checked at corners only.
-void warn_of_volume(Report& report, const Mesh& mesh, const VolumeMover& mover);
+/// Elements that were checked at their corners only.
+void warn_of_curved_elements(Report& report, const MeshCheck& check);
+
+/// Nodes of the surfaces on faces that stay.
+void warn_of_walls(Report& report, const VolumeMover& mover);
 
 }  // namespace roughmesh::detail
