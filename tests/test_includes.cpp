@@ -13,9 +13,9 @@
 namespace {
 
 const std::vector<std::string> order = {
-    "error",       "mesh",       "mesh_io",     "surface", "mask",     "autocorrelation",
-    "distance",    "resolution", "white_noise", "field",   "displace", "check",
-    "move_volume", "statistics", "options",     "report",  "pipeline"};
+    "error",      "mesh",        "mesh_io",    "cad",      "surface",         "mask",    "periodic",
+    "autocorrelation", "distance",    "correlation", "resolution", "white_noise", "field",
+    "displace",   "check",       "move_volume", "statistics", "options",         "report",  "pipeline"};
 
 std::filesystem::path source_dir() { return ROUGHMESH_SOURCE_DIR; }
 

@@ -87,8 +87,9 @@ std::string checksum(const Mesh& mesh);
 /// of the mesh: 2^-23 of a coordinate's binade for binary STL, 2^-52 otherwise. A length.
 double coordinate_spacing(const Mesh& mesh);
 
-/// Removes what an unfinished write_mesh or write_text left beside its path. Async-signal-safe: for
-/// the handler of an interrupt, after which the process must end.
+/// Removes what an unfinished write_mesh or write_text left beside its path; kills a gmsh that runs
+/// for mesh_geometry and removes its temporary folder. Async-signal-safe: for the handler of an
+/// interrupt, after which the process must end.
 void discard_unfinished_files() noexcept;
 
 }  // namespace roughmesh
