@@ -47,10 +47,13 @@ struct FileFormat {
   /// From the arrays alone, of a mesh that passed the check. Null if never written anew.
   void (*write_new)(const Mesh& mesh, const WriteOptions& options, OutputFile& output) = nullptr;
   Holds holds = {};
+  /// Phrases for what `holds` cannot tell of. Null if there is nothing.
+  std::vector<std::string> (*losses)(const Mesh& mesh) = nullptr;
   std::vector<Encoding> encodings = {Encoding::text};  ///< of new files, the usual one first
 };
 
-extern const FileFormat msh4_format, msh2_format, stl_format, ply2_format, vtu_format;
+extern const FileFormat msh4_format, msh2_format, stl_format, ply2_format, medit_format, su2_format,
+    vtk_format, vtu_format;
 
 /// Every format, in the order in which they are asked whether they recognize a file.
 std::span<const FileFormat* const> file_formats();

@@ -16,11 +16,15 @@ namespace roughmesh::detail {
 bool same_bits(double a, double b);
 bool same_bits(const Vec3& a, const Vec3& b);
 
-/// Replaces triples of numbers, front to back; everything between them is copied.
+/// Replaces triples of numbers (pairs in a plane mesh), front to back; everything between them is
+/// copied.
 class TriplePatcher {
  public:
   TriplePatcher(const MeshSource& source, OutputFile& output)
-      : source_(&source), output_(&output) {}
+      : source_(&source), output_(&output), format_(source.coordinates) {}
+
+  /// Of the numbers that follow; at first that of the coordinates.
+  void set_format(NumberFormat format) { format_ = format; }
 
   /// The three numbers that begin at `offset`: each that differs between `from` and `to` is
   /// written anew, each other keeps its bytes.
@@ -33,6 +37,7 @@ class TriplePatcher {
  private:
   void copy_until(std::uint64_t offset);
   void copy_space();
+  bool is_comment(char c) const;
   void skip_number();
   void write_number(double value);
   template <typename T>
@@ -40,6 +45,7 @@ class TriplePatcher {
 
   const MeshSource* source_;
   OutputFile* output_;
+  NumberFormat format_;
   std::uint64_t position_ = 0;  ///< everything before it is written
 };
 

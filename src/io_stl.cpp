@@ -113,13 +113,6 @@ Soup binary_soup(const FileBytes& file, std::size_t n) {
   return soup;
 }
 
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-
-bool equal_ignoring_case(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](char x, char y) { return lower(x) == lower(y); });
-}
-
 void expect_words(Scanner& scanner, std::initializer_list<std::string_view> words) {
   for (const std::string_view word : words) {
     scanner.skip_space();
@@ -156,12 +149,6 @@ struct Solid {
   std::string name;
   std::size_t begin = 0, end = 0;  // facets
 };
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 Solid read_solid(Scanner& scanner, Soup& soup) {
   Solid solid;

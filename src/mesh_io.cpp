@@ -70,13 +70,26 @@ void require_encoding(const FileFormat& format, Encoding encoding,
                                encoding == Encoding::text ? "text" : "binary"));
 }
 
+Encoding source_encoding(const Mesh& mesh) {
+  return mesh.source->coordinates == detail::NumberFormat::text ? Encoding::text : Encoding::binary;
+}
+
+// That of the source where the format stays.
+Encoding usual_encoding(const Mesh& mesh, const FileFormat& format) {
+  if (mesh.source != nullptr && mesh.format == format.format) {
+    const auto& encodings = format.encodings;
+    if (std::count(encodings.begin(), encodings.end(), source_encoding(mesh)) > 0)
+      return source_encoding(mesh);
+  }
+  return format.encodings.front();
+}
+
 // Refuses what cannot be written whatever the positions are.
 WritePlan make_plan(const Mesh& mesh, const std::filesystem::path& path,
                     const WriteOptions& options) {
   WritePlan plan{&choose_format(mesh, path, options), false, options};
   if (is_as_read(mesh) && plan.format->format == mesh.format) {
-    const bool is_text = mesh.source->coordinates == detail::NumberFormat::text;
-    const Encoding encoding = is_text ? Encoding::text : Encoding::binary;
+    const Encoding encoding = source_encoding(mesh);
     plan.copies_source = options.encoding.value_or(encoding) == encoding;
   }
   if (plan.copies_source) return plan;
@@ -84,7 +97,7 @@ WritePlan make_plan(const Mesh& mesh, const std::filesystem::path& path,
     throw InputError(fmt::format("{}: {} is only written from a mesh that was read as {}; use .msh",
                                  path.string(), name(plan.format->format),
                                  name(plan.format->format)));
-  plan.options.encoding = options.encoding.value_or(plan.format->encodings.front());
+  plan.options.encoding = options.encoding.value_or(usual_encoding(mesh, *plan.format));
   require_encoding(*plan.format, *plan.options.encoding, path);
   detail::check_arrays(mesh, path);
   plan.format->check_new(mesh, path);
@@ -166,6 +179,8 @@ std::vector<std::string> conversion_losses(const Mesh& mesh, const std::filesyst
   if (!mesh.periodic_links.empty() && !holds.periodic_links)
     losses.push_back(fmt::format("{} periodic links", mesh.periodic_links.size()));
   if (has_own_numbers(mesh) && !holds.tags) losses.emplace_back("numbers of nodes and elements");
+  if (plan.format->losses != nullptr)
+    for (std::string& loss : plan.format->losses(mesh)) losses.push_back(std::move(loss));
   if (mesh.source != nullptr) losses.emplace_back("comments and data of the input file");
   return losses;
 }

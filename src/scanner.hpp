@@ -68,6 +68,15 @@ class Scanner {
   double real();
   void skip_number(std::size_t n_bytes);  ///< of any kind; so many bytes in a binary file
 
+  template <typename T>
+  T bytes() {  ///< a number of a binary file, in the file's byte order
+    if (remaining() < sizeof(T)) fail(cut_short);
+    T value;
+    std::memcpy(&value, position_, sizeof(T));
+    position_ += sizeof(T);
+    return swap_bytes_ ? reverse_bytes(value) : value;
+  }
+
   /// A number of things of which each takes at least so many bytes: fails where they cannot fit
   /// into what remains, before anything is allocated for them.
   std::size_t count(Tag n, std::size_t min_bytes_each, std::string_view things) const;
@@ -79,14 +88,6 @@ class Scanner {
   [[noreturn]] void refuse(std::string_view what) const;
 
  private:
-  template <typename T>
-  T bytes() {
-    if (remaining() < sizeof(T)) fail(cut_short);
-    T value;
-    std::memcpy(&value, position_, sizeof(T));
-    position_ += sizeof(T);
-    return swap_bytes_ ? reverse_bytes(value) : value;
-  }
   [[noreturn]] void fail_token(std::string_view expected) const;
   double checked_real(std::from_chars_result result, double value);
 
@@ -103,6 +104,13 @@ class Scanner {
 /// For messages: at most 24 characters, nothing that could break a line or a terminal.
 std::string printable(std::string_view text);
 std::string quoted(std::string_view text);  ///< likewise, in quotes
+
+bool equal_ignoring_case(std::string_view a, std::string_view b);  ///< of ASCII letters
+std::string_view trimmed(std::string_view text);                   ///< without space at its ends
+
+/// A copy of a text in which comments, from the mark to the end of their line, are spaces: what is
+/// read from it stands at the same offsets in the file.
+FileBytes without_comments(const FileBytes& file, char mark);
 
 // In the header: a mesh of a million nodes has fifty million integers.
 inline Tag Scanner::text_integer() {
