@@ -20,8 +20,12 @@ bool same_bits(const Vec3& a, const Vec3& b) {
   return same_bits(a[0], b[0]) && same_bits(a[1], b[1]) && same_bits(a[2], b[2]);
 }
 
+double as_stored(NumberFormat format, double value) {
+  return format == NumberFormat::float32 ? static_cast<float>(value) : value;
+}
+
 double as_stored(const MeshSource& source, double value) {
-  return source.coordinates == NumberFormat::float32 ? static_cast<float>(value) : value;
+  return as_stored(source.coordinates, value);
 }
 
 void TriplePatcher::replace(std::uint64_t offset, const Vec3& from, const Vec3& to) {
@@ -33,7 +37,7 @@ void TriplePatcher::replace(std::uint64_t offset, const Vec3& from, const Vec3& 
     if (same_bits(from[k], to[k]))
       output_->write(source_->file.view().substr(start, position_ - start));
     else
-      write_number(to[k]);
+      write_number(to[k], source_->coordinates);
   }
 }
 
@@ -42,8 +46,15 @@ void TriplePatcher::replace(std::uint64_t offset, const Vec3& to) {
   for (int k = 0; k < 3; ++k) {
     copy_space();
     skip_number();
-    write_number(to[k]);
+    write_number(to[k], source_->coordinates);
   }
+}
+
+void TriplePatcher::replace_number(std::uint64_t offset, std::size_t n_bytes, NumberFormat format,
+                                   double value) {
+  copy_until(offset);
+  position_ += n_bytes;
+  write_number(value, format);
 }
 
 void TriplePatcher::copy_until(std::uint64_t offset) {
@@ -66,13 +77,13 @@ void TriplePatcher::skip_number() {
   while (position_ < source_->file.size && !is_space(source_->file.data[position_])) ++position_;
 }
 
-void TriplePatcher::write_number(double value) {
-  const double stored = as_stored(*source_, value);
+void TriplePatcher::write_number(double value, NumberFormat format) {
+  const double stored = as_stored(format, value);
   if (!std::isfinite(stored))
     throw InputError(fmt::format("{}: a coordinate of {} cannot be stored; check the displacement",
                                  output_->path().string(), value));
-  if (source_->coordinates == NumberFormat::float32) return write_bytes(static_cast<float>(stored));
-  if (source_->coordinates == NumberFormat::float64) return write_bytes(stored);
+  if (format == NumberFormat::float32) return write_bytes(static_cast<float>(stored));
+  if (format == NumberFormat::float64) return write_bytes(stored);
   char text[32];
   const auto [end, error] = std::to_chars(text, text + sizeof text, stored);
   output_->write({text, static_cast<std::size_t>(end - text)});
