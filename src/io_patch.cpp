@@ -4,6 +4,7 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -49,6 +50,15 @@ void TriplePatcher::replace(std::uint64_t offset, const Vec3& to) {
     skip_number();
     write_number(to[k]);
   }
+}
+
+void TriplePatcher::replace_number(std::uint64_t offset, std::size_t n_bytes, NumberFormat format,
+                                   double value) {
+  copy_until(offset);
+  position_ += n_bytes;
+  const NumberFormat usual = std::exchange(format_, format);
+  write_number(value);
+  format_ = usual;
 }
 
 void TriplePatcher::copy_until(std::uint64_t offset) {

@@ -32,6 +32,9 @@ class TriplePatcher {
   void replace(std::uint64_t offset, const Vec3& from, const Vec3& to);
   void replace(std::uint64_t offset, const Vec3& to);  ///< all three
 
+  /// A single number of so many bytes that begins at `offset`, in a format of its own.
+  void replace_number(std::uint64_t offset, std::size_t n_bytes, NumberFormat format, double value);
+
   void finish() { copy_until(source_->file.size); }
 
  private:
@@ -49,7 +52,9 @@ class TriplePatcher {
   std::uint64_t position_ = 0;  ///< everything before it is written
 };
 
-/// The number that the source's format holds for a value: nearest float32, or the value itself.
+/// The number that a format, or the source's own, holds for a value: nearest float32, or the value
+/// itself.
+double as_stored(NumberFormat format, double value);
 double as_stored(const MeshSource& source, double value);
 
 }  // namespace roughmesh::detail

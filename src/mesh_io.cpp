@@ -2,6 +2,7 @@
 #include "roughmesh/mesh_io.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <new>
 #include <system_error>
@@ -133,6 +134,26 @@ bool has_element_in_several_groups(const Mesh& mesh) {
   });
 }
 
+std::int64_t n_quadrangles(const Mesh& mesh) {
+  std::int64_t n = 0;
+  for (const ElementBlock& block : mesh.blocks)
+    if (block.type.shape == ElementShape::quadrangle) n += block.size();
+  return n;
+}
+
+void add_lost_elements(const Mesh& mesh, const detail::Holds& holds,
+                       std::vector<std::string>& losses) {
+  constexpr std::array things = {"points", "lines", "surface elements", "volume elements"};
+  for (int dim = 0; dim <= 3; ++dim) {
+    const std::int64_t n = n_elements(mesh, dim);
+    if (n > 0 && (dim < holds.least_dimension || dim > holds.most_dimension))
+      losses.push_back(fmt::format("{} {}", n, things[static_cast<std::size_t>(dim)]));
+  }
+  const std::int64_t n = n_quadrangles(mesh);
+  if (n > 0 && !holds.quadrangles)
+    losses.push_back(fmt::format("{} quadrangles, which become two triangles each", n));
+}
+
 // Numbers that are not 1, 2, 3, ... in the order of the arrays.
 bool has_own_numbers(const Mesh& mesh) {
   for (std::size_t i = 0; i < mesh.node_tags.size(); ++i)
@@ -169,11 +190,16 @@ std::vector<std::string> conversion_losses(const Mesh& mesh, const std::filesyst
   const WritePlan plan = make_plan(mesh, path, options);
   std::vector<std::string> losses;
   if (plan.copies_source) return losses;
-  const detail::Holds& holds = plan.format->holds;
+  const bool is_text = plan.options.encoding == Encoding::text;
+  const detail::Holds& holds =
+      is_text && plan.format->text_holds ? *plan.format->text_holds : plan.format->holds;
+  add_lost_elements(mesh, holds, losses);
   if (!mesh.groups.empty() && !holds.groups)
     losses.push_back(fmt::format("{} physical groups", mesh.groups.size()));
   if (n_named(mesh) > 0 && holds.groups && !holds.group_names)
     losses.push_back(fmt::format("names of {} physical groups", n_named(mesh)));
+  if (!mesh.groups.empty() && holds.groups && !holds.group_numbers)
+    losses.push_back(fmt::format("numbers of {} physical groups", mesh.groups.size()));
   if (has_element_in_several_groups(mesh) && holds.groups && !holds.several_groups)
     losses.emplace_back("all but the first group of elements in several");
   if (!mesh.periodic_links.empty() && !holds.periodic_links)
@@ -181,6 +207,7 @@ std::vector<std::string> conversion_losses(const Mesh& mesh, const std::filesyst
   if (has_own_numbers(mesh) && !holds.tags) losses.emplace_back("numbers of nodes and elements");
   if (plan.format->losses != nullptr)
     for (std::string& loss : plan.format->losses(mesh)) losses.push_back(std::move(loss));
+  if (!holds.full_precision) losses.emplace_back("digits of positions beyond float32");
   if (mesh.source != nullptr) losses.emplace_back("comments and data of the input file");
   return losses;
 }

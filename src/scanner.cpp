@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -32,6 +33,22 @@ std::string_view Scanner::text_token() {
   const char* const start = position_;
   position_ = std::find_if(position_, end_, is_space);
   return {start, static_cast<std::size_t>(position_ - start)};
+}
+
+Tag Scanner::text_integer(std::string_view token) {
+  position_ = token.data();
+  const char* const whole = std::exchange(end_, token.data() + token.size());
+  const Tag value = text_integer();
+  end_ = whole;
+  return value;
+}
+
+double Scanner::text_real(std::string_view token) {
+  position_ = token.data();
+  const char* const whole = std::exchange(end_, token.data() + token.size());
+  const double value = text_real();
+  end_ = whole;
+  return value;
 }
 
 Tag Scanner::size() {

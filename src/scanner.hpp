@@ -63,6 +63,10 @@ class Scanner {
   Tag text_integer();
   double text_real();  ///< finite, else it fails
 
+  /// Of a piece of the text that is one number whatever stands behind it; moves to its end.
+  Tag text_integer(std::string_view token);
+  double text_real(std::string_view token);
+
   Tag integer() { return encoding_ == Encoding::text ? text_integer() : bytes<std::int32_t>(); }
   Tag size();  ///< 0 to 2^63 - 1
   double real();
