@@ -35,7 +35,12 @@ PhysicalGroup require_group(const Mesh& mesh, const Surface& surface, const std:
 // ---- Borders: where one face, or one line of a curve, ends ----
 
 Faces faces_of(const Surface& surface) {
-  return {surface.face_offsets, surface.face_points, surface.face_tags, {}};
+  return {.dimension = surface.dimension,
+          .plane_normal = surface.plane_normal,
+          .offsets = surface.face_offsets,
+          .corners = surface.face_points,
+          .tags = surface.face_tags,
+          .file_order = {}};
 }
 
 std::vector<Simplex> border_edges(const Surface& surface) {
