@@ -88,7 +88,7 @@ std::string optional_length(const std::optional<double>& value) {
 void print_lengths(const Autocorrelation& autocorrelation, const std::string& unit) {
   const EquivalentLengths lengths = autocorrelation.equivalent_lengths();
   fmt::print("\ncorrelation length of {}, in {}\n", name(autocorrelation.family()), unit);
-  fmt::print("  {:<34} {:.6g}\n", "formula", lengths.formula);
+  fmt::print("  {:<34} {}\n", "formula", optional_length(lengths.formula));
   fmt::print("  {:<34} {:.6g}\n", "1/e distance", lengths.one_over_e);
   fmt::print("  {:<34} {}\n", "integral scale", optional_length(lengths.integral));
   fmt::print("  {:<34} {:.6g}\n", "Sal (decay to 0.2)", lengths.sal);
@@ -142,9 +142,9 @@ void run_info(const RoughenOptions& options, bool has_rms) {
     return;
   }
   print_surface(surface, unit);
-  const FieldModel model = field_model(with_length(options, surface), surface.points);
-  const Resolution resolution = assess_resolution(surface, model.autocorrelation, model.distance);
-  print_lengths(model.autocorrelation, unit);
+  const Correlation correlation = field_model(with_length(options, surface), surface.points);
+  const Resolution resolution = assess_resolution(surface, correlation);
+  print_lengths(correlation.autocorrelation(), unit);
   print_resolution(resolution, has_rms, options.rms, unit);
   print_limits(resolution, unit);
   const double rq = has_rms ? options.rms : 0.0;

@@ -153,11 +153,10 @@ Report roughen(const Mesh& mesh, const RoughenOptions& options, const Deliver& d
       timed(t.surface, [&] { return select_surface(mesh, surface_options(options)); });
   refuse_moving_links(mesh, surface);
   describe_surface(report, surface);
-  const FieldModel model = field_model(options, surface.points);
-  const Autocorrelation& rho = model.autocorrelation;
-  const Distance& distance = model.distance;
+  const Correlation correlation = field_model(options, surface.points);
+  const Autocorrelation& rho = correlation.autocorrelation();
   report.lengths = rho.equivalent_lengths();
-  report.resolution = timed(t.surface, [&] { return assess_resolution(surface, rho, distance); });
+  report.resolution = timed(t.surface, [&] { return assess_resolution(surface, correlation); });
   detail::warn_of_surface(report, surface);
   detail::warn_of_scale(report, mesh, surface);
 
@@ -166,12 +165,12 @@ Report roughen(const Mesh& mesh, const RoughenOptions& options, const Deliver& d
   detail::warn_of_walls(report, mover);
   const double quality_before = timed(t.check, [&] { return min_quality(mesh); });
 
-  const FieldSampler sampler = timed(
-      t.field, [&] { return FieldSampler(surface.points, rho, distance, field_options(options)); });
+  const FieldSampler sampler =
+      timed(t.field, [&] { return FieldSampler(correlation, field_options(options)); });
   report.field = sampler.summary();
   report.audit = timed(t.audit, [&] { return sampler.audit(); });
   detail::warn_of_field(report);
-  const ExpectedSq expected = timed(t.audit, [&] { return expected_sq(surface, rho, distance); });
+  const ExpectedSq expected = timed(t.audit, [&] { return expected_sq(surface, correlation); });
   report.citations = cited_works(sampler, rho);
 
   RoughMesh rough{.mesh = mesh,
@@ -209,17 +208,18 @@ std::vector<PointField> point_fields(const RoughMesh& rough) {
           {"displacement", 3, flatten(rough.displacements)}};
 }
 
-FieldModel field_model(const RoughenOptions& options, std::span<const Vec3> points) {
-  Autocorrelation autocorrelation(autocorrelation_options(options));
+Correlation field_model(const RoughenOptions& options, std::span<const Vec3> points) {
+  const Autocorrelation autocorrelation(autocorrelation_options(options));
+  const std::vector<Vec3> places(points.begin(), points.end());
   if (options.distance == DistanceKind::great_circle)
-    return {std::move(autocorrelation), Distance::great_circle(points)};
-  if (options.length.size() < 2) return {std::move(autocorrelation), Distance::euclidean()};
+    return {places, autocorrelation, Distance::great_circle(points)};
+  if (options.length.size() < 2) return {places, autocorrelation, Distance::euclidean()};
 
   const double turn = options.angle / 180.0 * std::numbers::pi;
   Anisotropy anisotropy;
   anisotropy.lengths = {options.length[0], options.length[1], options.length.back()};
   anisotropy.axes = Eigen::AngleAxisd(turn, Vec3::UnitZ()).toRotationMatrix();
-  return {std::move(autocorrelation), Distance::stretched(anisotropy)};
+  return {places, autocorrelation, Distance::stretched(anisotropy)};
 }
 
 }  // namespace roughmesh

@@ -70,7 +70,7 @@ ordered_json field_json(const Report& r) {
           {"covariance_error", number(r.audit.covariance_error)},
           {"audited_pairs", r.audit.n_pairs},
           {"equivalent_lengths",
-           {{"formula", number(r.lengths.formula)},
+           {{"formula", optional(r.lengths.formula)},
             {"one_over_e", number(r.lengths.one_over_e)},
             {"integral", optional(r.lengths.integral)},
             {"sal", number(r.lengths.sal)}}},

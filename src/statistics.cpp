@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "gamma_function.hpp"
+#include "matching_points.hpp"
 #include "parallel.hpp"
 
 namespace roughmesh {
@@ -47,11 +48,11 @@ struct Decorrelation {
   double mean_square = 0;
 };
 
-Decorrelation decorrelation_from(const Vec3& source, const Surface& surface,
-                                 const Autocorrelation& autocorrelation, const Distance& distance) {
+Decorrelation decorrelation_from(std::size_t source, const Surface& surface,
+                                 const Correlation& correlation) {
   Decorrelation sum;
   for (std::size_t j = 0; j < surface.points.size(); ++j) {
-    const double lost = 1 - autocorrelation.rho(distance(source, surface.points[j]));
+    const double lost = 1 - correlation(static_cast<Index>(source), static_cast<Index>(j));
     sum.mean += surface.areas[j] * lost;
     sum.mean_square += surface.areas[j] * lost * lost;
   }
@@ -65,15 +66,12 @@ struct MeanSquareMoments {
   double variance = 0;
 };
 
-MeanSquareMoments mean_square_moments(const Surface& surface,
-                                      const Autocorrelation& autocorrelation,
-                                      const Distance& distance) {
+MeanSquareMoments mean_square_moments(const Surface& surface, const Correlation& correlation) {
   const std::vector<Source> sources = source_points(surface);
   std::vector<Decorrelation> rows(sources.size());
   detail::parallel_for(sources.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      rows[i] =
-          decorrelation_from(surface.points[sources[i].point], surface, autocorrelation, distance);
+      rows[i] = decorrelation_from(sources[i].point, surface, correlation);
   });
   double mean = 0, mean_of_squares = 0, square_of_means = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -111,10 +109,10 @@ HeightStatistics height_statistics(const Surface& surface, std::span<const doubl
 // Sq^2 is a quadratic form of normal numbers. A multiple of chi-square with the same mean and
 // variance stands for it (G. E. P. Box 1954, doi:10.1214/aoms/1177728786), `half` being half its
 // number of degrees of freedom.
-ExpectedSq expected_sq(const Surface& surface, const Autocorrelation& autocorrelation,
-                       const Distance& distance) {
+ExpectedSq expected_sq(const Surface& surface, const Correlation& correlation) {
   constexpr double large = 1e6;
-  const MeanSquareMoments moments = mean_square_moments(surface, autocorrelation, distance);
+  detail::require_points_of(surface, correlation);
+  const MeanSquareMoments moments = mean_square_moments(surface, correlation);
   if (!(moments.mean > 0)) return {};
   const double root = std::sqrt(moments.mean);
   if (moments.variance == 0) return {root, 0};

@@ -46,7 +46,7 @@ void warn_of_scale(Report& report, const Mesh& mesh, const Surface& surface) {
     report.warnings.push_back(
         fmt::format("--rms {:g} is {:.1e} of the mesh size {:.3g}; check the unit", rq, rq / h, h));
   const double size = std::sqrt(surface.area);
-  const double length = report.lengths.formula;
+  const double length = report.lengths.formula.value_or(report.lengths.one_over_e);
   if (length < 1e-2 * h)
     report.warnings.push_back(
         fmt::format("correlation length {:g} is {:.1e} of the mesh size {:.3g}; check the unit",

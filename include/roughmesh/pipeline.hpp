@@ -41,12 +41,8 @@ Report roughen(const Mesh& mesh, const RoughenOptions& options, const Deliver& d
 /// Heights, normals and displacements as point data, for files that carry them.
 std::vector<PointField> point_fields(const RoughMesh& rough);
 
-/// Distance that the options ask for, on these points, and the autocorrelation that goes with it:
-/// of anisotropic lengths, the first finite one.
-struct FieldModel {
-  Autocorrelation autocorrelation;
-  Distance distance;
-};
-FieldModel field_model(const RoughenOptions& options, std::span<const Vec3> points);
+/// Correlation of these points by the distance that the options ask for and the autocorrelation
+/// that goes with it: of anisotropic lengths, that of the first finite one.
+Correlation field_model(const RoughenOptions& options, std::span<const Vec3> points);
 
 }  // namespace roughmesh

@@ -4,8 +4,7 @@
 
 #include <span>
 
-#include "roughmesh/autocorrelation.hpp"
-#include "roughmesh/distance.hpp"
+#include "roughmesh/correlation.hpp"
 #include "roughmesh/surface.hpp"
 
 namespace roughmesh {
@@ -31,7 +30,7 @@ struct ExpectedSq {
 /// From rho alone (docs/math.md, eq. 19 and 20): below 1 because Sq is taken about the mean of a
 /// finite surface. Exact sums up to 2,000 points, beyond that over 256 area-weighted source points:
 /// linear time.
-ExpectedSq expected_sq(const Surface& surface, const Autocorrelation& autocorrelation,
-                       const Distance& distance);
+/// @throws InputError  the correlation is not one of the points of this surface
+ExpectedSq expected_sq(const Surface& surface, const Correlation& correlation);
 
 }  // namespace roughmesh
