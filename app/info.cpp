@@ -95,7 +95,7 @@ std::string optional_length(const std::optional<double>& value) {
 void print_lengths(const Autocorrelation& autocorrelation, const std::string& unit) {
   const EquivalentLengths lengths = autocorrelation.equivalent_lengths();
   fmt::print("\ncorrelation length of {}, in {}\n", name(autocorrelation.family()), unit);
-  fmt::print("  {:<34} {:.6g}\n", "formula", lengths.formula);
+  fmt::print("  {:<34} {}\n", "formula", optional_length(lengths.formula));
   fmt::print("  {:<34} {:.6g}\n", "1/e distance", lengths.one_over_e);
   fmt::print("  {:<34} {}\n", "integral scale", optional_length(lengths.integral));
   fmt::print("  {:<34} {:.6g}\n", "Sal (decay to 0.2)", lengths.sal);
@@ -123,8 +123,8 @@ void print_limits(const Resolution& r, const std::string& unit) {
 }
 
 /// Without a length asked for, the shortest the mesh carries.
-RoughenOptions with_length(RoughenOptions options, const Surface& surface) {
-  const bool has_length = !options.length.empty() || options.rolloff;
+Roughness with_length(Roughness options, const Surface& surface) {
+  const bool has_length = !options.length.empty() || options.rolloff || options.acf == Family::table;
   if (!has_length) options.length = {sizes_per_length * surface.mesh_size.median};
   return options;
 }
@@ -134,27 +134,28 @@ RoughenOptions with_length(RoughenOptions options, const Surface& surface) {
 void run_info(const RoughenOptions& options, bool has_rms) {
   if (options.input.empty()) throw InputError("INPUT: missing; give a mesh: roughmesh info MESH");
   const std::string unit = options.unit.empty() ? "mesh units" : options.unit;
-  if (has_rms && !(std::isfinite(options.rms) && options.rms > 0))
-    throw InputError(fmt::format("--rms: {:g}; must be a positive number", options.rms));
-  const Mesh mesh = read_mesh(options.input);
+  const Roughness& request = options.surfaces.front();
+  if (has_rms && !(std::isfinite(request.rms) && request.rms > 0))
+    throw InputError(fmt::format("--rms: {:g}; must be a positive number", request.rms));
+  const Mesh mesh = read_input(options);
   print_mesh(mesh, options.input);
   print_groups(mesh);
 
   Surface surface;
   try {
-    surface = select_surface(mesh, surface_options(options));
+    surface = select_surface(mesh, surface_options(request));
   } catch (const InputError& error) {
-    if (!options.group.empty()) throw;
+    if (!request.group.empty()) throw;
     fmt::print("\n{}\n", error.what());
     return;
   }
   print_surface(surface, unit);
-  const FieldModel model = field_model(with_length(options, surface), surface.points);
-  const Resolution resolution = assess_resolution(surface, model.autocorrelation, model.distance);
-  print_lengths(model.autocorrelation, unit);
-  print_resolution(resolution, has_rms, options.rms, unit);
+  const Correlation correlation = field_model(with_length(request, surface), surface);
+  const Resolution resolution = assess_resolution(surface, correlation);
+  print_lengths(correlation.autocorrelation(), unit);
+  print_resolution(resolution, has_rms, request.rms, unit);
   print_limits(resolution, unit);
-  const double rq = has_rms ? options.rms : 0.0;
+  const double rq = has_rms ? request.rms : 0.0;
   for (const std::string& warning : resolution_warnings(resolution, rq))
     fmt::print("warning: {}\n", warning);
 }

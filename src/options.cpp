@@ -150,10 +150,23 @@ void check_lengths(const Roughness& o) {
                     "L,LY,LZ",
                     o.angle));
   const DistanceKind distance = o.distance.value_or(DistanceKind::euclidean);
-  if (o.length.size() > 1 && distance == DistanceKind::great_circle)
+  if (o.length.size() > 1 &&
+      (distance == DistanceKind::great_circle || distance == DistanceKind::curve))
     throw InputError(fmt::format("--length: {} numbers; anisotropic lengths do not go with "
                                  "--distance {}",
                                  o.length.size(), name(distance)));
+}
+
+void check_period(const Roughness& o) {
+  if (o.period.empty()) return;
+  const bool is_used = !o.distance || o.distance == DistanceKind::periodic ||
+                       o.distance == DistanceKind::minimum_image;
+  if (o.period.size() != 3)
+    throw InputError(fmt::format("--period: {} numbers; give LX,LY,LZ with 0 for an axis without",
+                                 o.period.size()));
+  if (!is_used)
+    throw InputError(fmt::format("--period: goes with --distance periodic or minimum-image, not {}",
+                                 name(*o.distance)));
 }
 
 void check_roughness(const Roughness& o) {
@@ -164,6 +177,7 @@ void check_roughness(const Roughness& o) {
           "above 0 and at most 180 degrees");
   require(std::isfinite(o.angle), "--angle", o.angle, "a finite number of degrees");
   check_lengths(o);
+  check_period(o);
   mask_options(o);
   // Throws for a parameter that is missing, foreign to the family or out of range.
   Autocorrelation{autocorrelation_options(o)};
@@ -255,7 +269,11 @@ AutocorrelationOptions autocorrelation_options(const Roughness& o) {
                                 .hurst = o.hurst,
                                 .rolloff = o.rolloff,
                                 .power = o.power,
-                                .alpha = o.alpha};
+                                .alpha = o.alpha,
+                                .table = {}};
+  if (o.acf == Family::table && o.table.empty())
+    throw InputError("--table: missing; give the file with the two columns of --acf table");
+  if (!o.table.empty()) result.table = read_correlation_table(o.table);
   // Anisotropic lengths scale the distance; rho belongs to the first finite one. A single length is
   // taken as it is, so that the family can refuse it by name.
   if (!o.length.empty()) result.length = o.length.front();
@@ -310,6 +328,24 @@ WriteOptions write_options(const RoughenOptions& o) {
   WriteOptions options{.format = o.format};
   if (o.ascii) options.encoding = Encoding::text;
   if (o.binary) options.encoding = Encoding::binary;
+  return options;
+}
+
+GeometryOptions geometry_options(const RoughenOptions& o) {
+  const Roughness& first = o.surfaces.front();
+  const bool has_length = !first.length.empty() || first.rolloff || !first.table.empty();
+  // A script knows its own sizes.
+  const bool is_script = std::filesystem::path(o.input).extension() == ".geo";
+  if (!o.mesh_size && !is_script && !has_length)
+    throw InputError("--mesh-size: missing; CAD files need it, or --length, of which it is 1 / 2.5");
+  GeometryOptions options;
+  options.gmsh = o.gmsh;
+  options.timeout = o.timeout;
+  options.trust_scripts = o.trust_scripts;
+  if (o.mesh_size)
+    options.mesh_size = *o.mesh_size;
+  else if (!is_script)
+    options.mesh_size = Autocorrelation(autocorrelation_options(first)).length() / 2.5;
   return options;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "roughmesh/pipeline.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <numbers>
@@ -8,10 +9,12 @@
 
 #include <fmt/format.h>
 
+#include "roughmesh/curve.hpp"
 #include "roughmesh/displace.hpp"
 #include "roughmesh/move_volume.hpp"
 
 #include "parallel.hpp"
+#include "rough_surface.hpp"
 #include "warnings.hpp"
 
 namespace roughmesh {
@@ -90,11 +93,11 @@ std::vector<std::string> cited_works(std::span<const FieldSampler> samplers,
 }
 
 SqTarget expect(const Surface& surface, const SurfacePlan& plan, const Correlation& correlation) {
-  SqTarget target{expected_sq(surface, correlation, plan.weights), {}, std::nullopt};
+  SqTarget target{expected_sq(surface, correlation, {.weights = plan.weights}), {}, std::nullopt};
   std::vector<double> areas = full_weight_areas(surface, plan.weights);
   const auto n_whole = std::count_if(areas.begin(), areas.end(), [](double a) { return a > 0; });
   if (n_whole == 0 || n_whole == surface.n_points()) return target;
-  target.unfaded = expected_sq(surface, correlation, plan.weights, areas);
+  target.unfaded = expected_sq(surface, correlation, {.weights = plan.weights, .areas = areas});
   target.unfaded_areas = std::move(areas);
   return target;
 }
@@ -161,11 +164,10 @@ VolumeMethod volume_method(const RoughenOptions& options) {
 /// The stages of one run, in order; each fills in its part of the report.
 class Run {
  public:
-  Run(const Mesh& mesh, const RoughenOptions& options)
-      : mesh_(mesh), options_(options), report_(begin_report(mesh, options)) {}
+  Run(const Mesh& mesh, const RoughenOptions& options, Report report)
+      : mesh_(mesh), options_(options), report_(std::move(report)) {}
 
   Report make(const Deliver& deliver) {
-    report_.request.threads = detail::n_threads();  // the same bits at equal threads only
     select();
     const VolumeMover mover = timed(times().volume, [&] {
       return VolumeMover(mesh_, rough_.surfaces, volume_method(options_));
@@ -282,7 +284,9 @@ class Run {
 Report roughen(const Mesh& mesh, const RoughenOptions& options, const Deliver& deliver) {
   check_options(options);
   const detail::ThreadLimit threads(options.threads);
-  return Run(mesh, options).make(deliver);
+  Report report = begin_report(mesh, options);
+  report.request.threads = threads.n_threads();  // results are the same bits at equal threads only
+  return Run(mesh, options, std::move(report)).make(deliver);
 }
 
 std::vector<PointField> point_fields(const RoughMesh& rough) {
@@ -295,6 +299,54 @@ std::vector<PointField> point_fields(const RoughMesh& rough) {
   return {{"height", 1, rough.heights},
           {"normal", 3, flatten(rough.normals)},
           {"displacement", 3, flatten(rough.displacements)}};
+}
+
+namespace {
+
+/// Lengths along the axes that the request turns; all equal for an isotropic field.
+Anisotropy anisotropy_of(const Roughness& request, double length) {
+  Anisotropy anisotropy{.lengths = {length, length, length}};
+  if (request.length.size() > 1)
+    anisotropy.lengths = {request.length[0], request.length[1], request.length.back()};
+  const double turn = request.angle / 180.0 * std::numbers::pi;
+  anisotropy.axes = Eigen::AngleAxisd(turn, Vec3::UnitZ()).toRotationMatrix();
+  return anisotropy;
+}
+
+Vec3 period_of(const Roughness& request) {
+  if (request.period.size() != 3)
+    throw InputError(fmt::format("--distance: {}; needs --period LX,LY,LZ",
+                                 name(request.distance.value_or(DistanceKind::periodic))));
+  return {request.period[0], request.period[1], request.period[2]};
+}
+
+Correlation along_curve(const Autocorrelation& autocorrelation, const Surface& surface) {
+  CurvePlaces curve = curve_places(surface);
+  return {std::move(curve.places), autocorrelation,
+          Distance::curve(std::move(curve.closed_lengths))};
+}
+
+Distance distance_between(const Roughness& request, double length, const Surface& surface) {
+  switch (request.distance.value_or(DistanceKind::euclidean)) {
+    case DistanceKind::great_circle:
+      return Distance::great_circle(surface.points);
+    case DistanceKind::periodic:
+      return Distance::periodic(period_of(request), anisotropy_of(request, length));
+    case DistanceKind::minimum_image:
+      return Distance::minimum_image(period_of(request), anisotropy_of(request, length));
+    default:
+      return request.length.size() < 2 ? Distance::euclidean()
+                                       : Distance::stretched(anisotropy_of(request, length));
+  }
+}
+
+}  // namespace
+
+Correlation field_model(const Roughness& request, const Surface& surface) {
+  const Autocorrelation autocorrelation(autocorrelation_options(request));
+  if (request.distance == DistanceKind::curve) return along_curve(autocorrelation, surface);
+  return {surface.points, autocorrelation,
+          distance_between(request, autocorrelation.length(), surface)};
 }
 
 }  // namespace roughmesh

@@ -72,7 +72,7 @@ ordered_json field_json(const SurfaceReport& r, double tolerance) {
           {"covariance_error", number(r.audit.covariance_error)},
           {"audited_pairs", r.audit.n_pairs},
           {"equivalent_lengths",
-           {{"formula", number(r.lengths.formula)},
+           {{"formula", optional(r.lengths.formula)},
             {"one_over_e", number(r.lengths.one_over_e)},
             {"integral", optional(r.lengths.integral)},
             {"sal", number(r.lengths.sal)}}},
@@ -81,7 +81,9 @@ ordered_json field_json(const SurfaceReport& r, double tolerance) {
           {"negative_eigenvalues", r.field.negative_eigenvalues},
           {"smallest_eigenvalue", optional(r.field.smallest_eigenvalue)},
           {"smallest_correlation", number(r.field.smallest_correlation)},
-          {"variance_change", number(r.field.variance_change)}};
+          {"variance_change", number(r.field.variance_change)},
+          {"fit_residual", optional(r.fit_residual)},
+          {"minimum_image_difference", optional(r.field.minimum_image_difference)}};
 }
 
 ordered_json statistics_json(const SurfaceStatistics& r) {

@@ -59,18 +59,22 @@ bool is_periodic(DistanceKind kind) {
 /// would come apart.
 void refuse_broken_links(const Surface& surface, const SurfacePlan& plan,
                          const PeriodicPartners& partners) {
+  constexpr const char* remedy = "let the roughness end there with --fade WIDTH:GROUP or --fixed";
   for (Index i = 0; i < surface.n_points(); ++i) {
     if (plan.weights[i] == 0) continue;
-    if (partners.rotated[i])
+    const std::string at = place(surface.points[i]);
+    if (partners.rotated[i] != 0)
       throw InputError(fmt::format(
-          "the periodic link of the node at {} is no translation along an axis; let the roughness "
-          "end there with --fade WIDTH:GROUP or --fixed GROUP",
-          place(surface.points[i])));
+          "the periodic link of the node at {} is no translation along an axis; {}", at, remedy));
+    if (partners.unpaired[i] != 0)
+      throw InputError(fmt::format(
+          "a periodic link joins the node at {} to one that stays; choose both sides, or {}", at,
+          remedy));
     if (partners.master[i] != i && !is_periodic(*plan.request.distance))
-      throw InputError(fmt::format(
-          "a periodic link joins the node at {} to another that moves; take --distance periodic, "
-          "or let the roughness end there with --fade WIDTH:GROUP",
-          place(surface.points[i])));
+      throw InputError(
+          fmt::format("a periodic link joins the node at {} to another that moves; take --distance "
+                      "periodic, or {}",
+                      at, remedy));
   }
 }
 
@@ -86,16 +90,27 @@ void fill_in_distance(Roughness& request, const Vec3& period) {
   request.period = {period.x(), period.y(), period.z()};
 }
 
+PeriodicPartners partners_of(const Mesh& mesh, const Surface& surface, const Roughness& request) {
+  if (request.period.empty()) return periodic_partners(mesh, surface);
+  const std::vector<double>& p = request.period;
+  return periodic_partners(mesh, surface, Vec3(p[0], p[1], p[2]));
+}
+
 FieldPlan plan_field(Correlation correlation, const PeriodicPartners& partners) {
-  FieldPlan plan{std::move(correlation), {}, {}};
+  FieldPlan plan{std::move(correlation), masters(partners), {}};
   std::vector<Index> position(partners.master.size(), -1);
-  for (std::size_t i = 0; i < partners.master.size(); ++i) {
-    if (partners.master[i] != static_cast<Index>(i)) continue;
-    position[i] = static_cast<Index>(plan.masters.size());
-    plan.masters.push_back(static_cast<Index>(i));
-  }
+  for (std::size_t i = 0; i < plan.masters.size(); ++i)
+    position[plan.masters[i]] = static_cast<Index>(i);
   for (const Index master : partners.master) plan.sampled_at.push_back(position[master]);
   return plan;
+}
+
+/// Every point for itself.
+PeriodicPartners no_partners(Index n_points) {
+  PeriodicPartners partners;
+  partners.master.resize(static_cast<std::size_t>(n_points));
+  std::iota(partners.master.begin(), partners.master.end(), Index{0});
+  return partners;
 }
 
 /// One surface of a field whose points are those of `whole`.
@@ -103,9 +118,9 @@ void join_field(const Mesh& mesh, const Surface& whole, const Vec3& period, Surf
                 SurfacePlan& plan) {
   fill_in_distance(plan.request, period);
   plan.field_point = points_in(mesh, surface, whole);
-  const PeriodicPartners partners = find_partners(mesh, surface, plan.request.period);
+  const PeriodicPartners partners = partners_of(mesh, surface, plan.request);
   refuse_broken_links(surface, plan, partners);
-  surface = with_partner_normals(surface, partners);
+  if (is_periodic(*plan.request.distance)) surface = with_partner_normals(surface, partners);
 }
 
 FieldPlan prepare_field(const Mesh& mesh, RoughSurfaces& rough,
@@ -113,7 +128,7 @@ FieldPlan prepare_field(const Mesh& mesh, RoughSurfaces& rough,
   const std::size_t first = members.front();
   const Surface whole =
       members.size() == 1 ? rough.surfaces[first] : joined(mesh, rough.plans, members);
-  const PeriodicPartners partners = find_partners(mesh, whole, rough.plans[first].request.period);
+  const PeriodicPartners partners = partners_of(mesh, whole, rough.plans[first].request);
   for (const std::size_t member : members)
     join_field(mesh, whole, partners.period, rough.surfaces[member], rough.plans[member]);
   const Roughness& request = rough.plans[first].request;

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "gamma_function.hpp"
+#include "matching_points.hpp"
 #include "parallel.hpp"
 
 namespace roughmesh {
@@ -76,7 +77,7 @@ struct Decorrelation {
 };
 
 Decorrelation decorrelation_from(std::size_t i, const Surface& surface, const MaskedField& field,
-                                 const Autocorrelation& autocorrelation, const Distance& distance) {
+                                 const Correlation& correlation) {
   Decorrelation sum;
   for (std::size_t j = 0; j < surface.points.size(); ++j) {
     const double area = field.areas.of_point[j];
@@ -85,7 +86,7 @@ Decorrelation decorrelation_from(std::size_t i, const Surface& surface, const Ma
     const double product = field.weights[i] * field.weights[j];
     double lost = step * step / 2;
     if (product > 0)
-      lost += product * (1 - autocorrelation.rho(distance(surface.points[i], surface.points[j])));
+      lost += product * (1 - correlation(static_cast<Index>(i), static_cast<Index>(j)));
     sum.mean += area * lost;
     sum.mean_square += area * lost * lost;
   }
@@ -100,13 +101,12 @@ struct MeanSquareMoments {
 };
 
 MeanSquareMoments mean_square_moments(const Surface& surface, const MaskedField& field,
-                                      const Autocorrelation& autocorrelation,
-                                      const Distance& distance) {
+                                      const Correlation& correlation) {
   const std::vector<Source> sources = source_points(field);
   std::vector<Decorrelation> rows(sources.size());
   detail::parallel_for(sources.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      rows[i] = decorrelation_from(sources[i].point, surface, field, autocorrelation, distance);
+      rows[i] = decorrelation_from(sources[i].point, surface, field, correlation);
   });
   double mean = 0, mean_of_squares = 0, square_of_means = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -186,12 +186,13 @@ HeightStatistics height_statistics(const Surface& surface, std::span<const doubl
 // Sq^2 is a quadratic form of normal numbers. A multiple of chi-square with the same mean and
 // variance stands for it (G. E. P. Box 1954, doi:10.1214/aoms/1177728786), `half` being half its
 // number of degrees of freedom.
-ExpectedSq expected_sq(const Surface& surface, const Autocorrelation& autocorrelation,
-                       const Distance& distance, const SqOptions& options) {
+ExpectedSq expected_sq(const Surface& surface, const Correlation& correlation,
+                       const SqOptions& options) {
   constexpr double large = 1e6;
+  detail::require_points_of(surface, correlation);
   const MaskedField field{field_weights(surface, options.weights),
                           counted_areas(surface, options.areas)};
-  const MeanSquareMoments moments = mean_square_moments(surface, field, autocorrelation, distance);
+  const MeanSquareMoments moments = mean_square_moments(surface, field, correlation);
   if (!(moments.mean > 0)) return {};
   const double root = std::sqrt(moments.mean);
   if (moments.variance == 0) return {root, 0};

@@ -26,6 +26,10 @@ struct VectorSum {
     sum += v;
     magnitude += v.norm();
   }
+  void add(const VectorSum& more) {
+    sum += more.sum;
+    magnitude += more.magnitude;
+  }
   bool has_direction() const { return sum.norm() > least_sum * magnitude; }
 };
 
@@ -81,6 +85,16 @@ std::vector<VectorSum> area_sums(const Surface& surface) {
       fmt::format("node {} at {} has no normal: its {} or cancel each other; mend the mesh there",
                   mesh.node_tags[node], place(surface.points[point]),
                   surface.dimension == 1 ? "lines have no length" : "faces have no area"));
+}
+
+// What the points of each group have together, at each of them.
+std::vector<VectorSum> shared_sums(const std::vector<VectorSum>& own,
+                                   std::span<const Index> sharer) {
+  std::vector<VectorSum> sums(own.size());
+  for (std::size_t i = 0; i < own.size(); ++i) sums[sharer[i]].add(own[i]);
+  for (std::size_t i = 0; i < own.size(); ++i)
+    if (sharer[i] != static_cast<Index>(i)) sums[i] = sums[sharer[i]];
+  return sums;
 }
 
 double longest_edge(const Corners& corners) {
@@ -155,6 +169,26 @@ void measure_normals(const Mesh& mesh, Surface& surface) {
       sum = &fallback[point];
     }
     if (!sum->has_direction()) refuse_point(mesh, surface, point);
+    surface.normals[point] = sum->sum / sum->sum.norm();
+  }
+}
+
+void measure_shared_normals(Surface& surface, std::span<const Index> sharer) {
+  if (surface.dimension != 2)
+    throw InputError("periodic partners of lines have no common normals; choose faces");
+  const std::vector<VectorSum> sums = shared_sums(max_sums(surface), sharer);
+  std::vector<VectorSum> fallback;
+  for (Index point = 0; point < surface.n_points(); ++point) {
+    const VectorSum* sum = &sums[point];
+    if (!sum->has_direction()) {
+      if (fallback.empty()) fallback = shared_sums(area_sums(surface), sharer);
+      sum = &fallback[point];
+    }
+    if (!sum->has_direction())
+      throw InputError(
+          fmt::format("the faces at {} and at its periodic images cancel each other: no normal is "
+                      "common to them; choose the faces of one side",
+                      place(surface.points[point])));
     surface.normals[point] = sum->sum / sum->sum.norm();
   }
 }

@@ -198,9 +198,9 @@ template <class Enum>
 struct Choices;
 template <>
 struct Choices<Family> {
-  static constexpr std::array values = {Family::gaussian,  Family::exponential,
-                                        Family::matern,    Family::self_affine,
-                                        Family::stretched, Family::rational_quadratic};
+  static constexpr std::array values = {
+      Family::gaussian,  Family::exponential,        Family::matern, Family::self_affine,
+      Family::stretched, Family::rational_quadratic, Family::table};
 };
 template <>
 struct Choices<LengthDefinition> {
@@ -209,7 +209,9 @@ struct Choices<LengthDefinition> {
 };
 template <>
 struct Choices<DistanceKind> {
-  static constexpr std::array values = {DistanceKind::euclidean, DistanceKind::great_circle};
+  static constexpr std::array values = {
+      DistanceKind::euclidean, DistanceKind::great_circle, DistanceKind::periodic,
+      DistanceKind::minimum_image, DistanceKind::curve};
 };
 template <>
 struct Choices<VolumeChoice> {

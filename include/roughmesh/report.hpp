@@ -55,6 +55,7 @@ struct SurfaceReport {
   FieldSummary field;
   Audit audit;
   EquivalentLengths lengths;
+  std::optional<double> fit_residual;  ///< of a table, as Autocorrelation::fit_residual()
   Resolution resolution;
 };
 

@@ -4,8 +4,7 @@
 
 #include <span>
 
-#include "roughmesh/autocorrelation.hpp"
-#include "roughmesh/distance.hpp"
+#include "roughmesh/correlation.hpp"
 #include "roughmesh/surface.hpp"
 
 namespace roughmesh {
@@ -41,8 +40,9 @@ struct SqOptions {
 /// From rho alone (docs/math.md, eq. 19, 20 and 44): below 1 because Sq is taken about the mean of
 /// a finite surface. Exact sums up to 2,000 points, beyond that over 256 area-weighted source
 /// points: linear time.
-/// @throws InputError  weights or areas out of range, or other numbers of them
-ExpectedSq expected_sq(const Surface& surface, const Autocorrelation& autocorrelation,
-                       const Distance& distance, const SqOptions& options = {});
+/// @throws InputError  weights or areas out of range, or other numbers of them; a correlation that
+///                     is not one of the points of this surface
+ExpectedSq expected_sq(const Surface& surface, const Correlation& correlation,
+                       const SqOptions& options = {});
 
 }  // namespace roughmesh
