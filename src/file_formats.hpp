@@ -25,6 +25,7 @@ struct Holds {
   bool periodic_links = false;
   bool tags = false;          ///< numbers of nodes and elements
   bool point_fields = false;  ///< WriteOptions::fields
+  bool points = true;         ///< elements of dimension 0
 };
 
 struct FileFormat {
@@ -47,10 +48,14 @@ struct FileFormat {
   /// From the arrays alone, of a mesh that passed the check. Null if never written anew.
   void (*write_new)(const Mesh& mesh, const WriteOptions& options, OutputFile& output) = nullptr;
   Holds holds = {};
+  /// Largest distance between neighbouring numbers that patching can write at the coordinates of
+  /// the mesh; 0, or null, where it is that of the number format.
+  double (*spacing)(const Mesh& mesh) = nullptr;
   std::vector<Encoding> encodings = {Encoding::text};  ///< of new files, the usual one first
 };
 
-extern const FileFormat msh4_format, msh2_format, stl_format, ply2_format, vtu_format;
+extern const FileFormat msh4_format, msh2_format, stl_format, ply2_format, abaqus_format, nastran_format,
+    unv_format, vtu_format;
 
 /// Every format, in the order in which they are asked whether they recognize a file.
 std::span<const FileFormat* const> file_formats();

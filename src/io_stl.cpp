@@ -10,6 +10,7 @@
 #include "file_formats.hpp"
 #include "io_patch.hpp"
 #include "scanner.hpp"
+#include "text.hpp"
 
 namespace roughmesh::detail {
 namespace {
@@ -156,12 +157,6 @@ struct Solid {
   std::string name;
   std::size_t begin = 0, end = 0;  // facets
 };
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 Solid read_solid(Scanner& scanner, Soup& soup) {
   Solid solid;

@@ -165,6 +165,8 @@ std::vector<std::string> conversion_losses(const Mesh& mesh, const std::filesyst
     losses.emplace_back("all but the first group of elements in several");
   if (!mesh.periodic_links.empty() && !holds.periodic_links)
     losses.push_back(fmt::format("{} periodic links", mesh.periodic_links.size()));
+  if (n_elements(mesh, 0) > 0 && !holds.points)
+    losses.push_back(fmt::format("{} point elements", n_elements(mesh, 0)));
   if (has_own_numbers(mesh) && !holds.tags) losses.emplace_back("numbers of nodes and elements");
   if (mesh.source != nullptr) losses.emplace_back("comments and data of the input file");
   return losses;
@@ -195,6 +197,8 @@ std::string checksum(const Mesh& mesh) {
 }
 
 double coordinate_spacing(const Mesh& mesh) {
+  if (mesh.source != nullptr && detail::file_format(mesh.format).spacing != nullptr)
+    if (const double own = detail::file_format(mesh.format).spacing(mesh); own > 0) return own;
   double largest = 0;
   for (const Vec3& x : mesh.nodes) largest = std::max(largest, x.lpNorm<Eigen::Infinity>());
   const bool is_float =

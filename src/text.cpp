@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "text.hpp"
+
+#include <algorithm>
+
+#include "scanner.hpp"
+
+namespace roughmesh::detail {
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+std::vector<std::string_view> words(std::string_view line) {
+  std::vector<std::string_view> result;
+  for (line = trimmed(line); !line.empty(); line = trimmed(line)) {
+    const auto* const end = std::find_if(line.begin(), line.end(), is_space);
+    const auto n = static_cast<std::size_t>(end - line.begin());
+    result.push_back(line.substr(0, n));
+    line.remove_prefix(n);
+  }
+  return result;
+}
+
+std::string upper(std::string_view text) {
+  std::string result(text);
+  for (char& c : result)
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  return result;
+}
+
+}  // namespace roughmesh::detail
