@@ -11,9 +11,10 @@ namespace {
 
 // Binary STL stands before its text, because headers of binary files like to begin with "solid";
 // formats that only their extension gives away stand last.
-constexpr std::array table = {&msh4_format, &msh2_format,  &stl_format, &ply_format, &off_format,
-                              &vtk_format,  &medit_format, &su2_format, &ply2_format, &obj_format,
-                              &vtu_format};
+constexpr std::array table = {
+    &msh4_format, &msh2_format,    &unv_format,    &stl_format,  &ply_format,
+    &off_format,  &vtk_format,     &medit_format,  &su2_format,  &nastran_format,
+    &abaqus_format, &ply2_format,  &obj_format,    &vtu_format};
 
 std::string read_extensions() {
   std::string list;

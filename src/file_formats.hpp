@@ -56,11 +56,15 @@ struct FileFormat {
   std::optional<Holds> text_holds = {};  ///< where a text file holds something else
   /// Phrases for what `holds` cannot tell of. Null if there is nothing.
   std::vector<std::string> (*losses)(const Mesh& mesh) = nullptr;
+  /// Largest distance between neighbouring numbers that patching can write at the coordinates of
+  /// the mesh; 0, or null, where it is that of the number format.
+  double (*spacing)(const Mesh& mesh) = nullptr;
   std::vector<Encoding> encodings = {Encoding::text};  ///< of new files, the usual one first
 };
 
 extern const FileFormat msh4_format, msh2_format, stl_format, ply_format, off_format, vtk_format,
-    medit_format, su2_format, ply2_format, obj_format, vtu_format;
+    medit_format, su2_format, ply2_format, obj_format, abaqus_format, nastran_format, unv_format,
+    vtu_format;
 
 /// Every format, in the order in which they are asked whether they recognize a file.
 std::span<const FileFormat* const> file_formats();

@@ -101,15 +101,29 @@ void TriplePatcher::write_number(double value) {
                                  output_->path().string(), value));
   if (format_ == NumberFormat::float32) return write_bytes(static_cast<float>(stored));
   if (format_ == NumberFormat::float64) return write_bytes(stored);
-  char text[32];
-  const auto [end, error] = std::to_chars(text, text + sizeof text, stored);
-  output_->write({text, static_cast<std::size_t>(end - text)});
+  output_->write(shortest(stored));
 }
 
 template <typename T>
 void TriplePatcher::write_bytes(T value) {
   if (source_->swap_bytes) value = reverse_bytes(value);
   output_->write({reinterpret_cast<const char*>(&value), sizeof value});
+}
+
+void TextPatcher::replace(std::string_view span, std::string_view text) {
+  const std::string_view file = source_->file.view();
+  const auto begin = static_cast<std::size_t>(span.data() - file.data());
+  output_->write(file.substr(position_, begin - position_));
+  output_->write(text);
+  position_ = begin + span.size();
+}
+
+void TextPatcher::finish() { output_->write(source_->file.view().substr(position_)); }
+
+std::string shortest(double value) {
+  char text[32];
+  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+  return {text, end};
 }
 
 namespace {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "roughmesh/mesh.hpp"
 
@@ -51,6 +52,33 @@ class TriplePatcher {
   NumberFormat format_;
   std::uint64_t position_ = 0;  ///< everything before it is written
 };
+
+/// Copies a text source while replacing spans of it, front to back.
+class TextPatcher {
+ public:
+  TextPatcher(const MeshSource& source, OutputFile& output)
+      : source_(&source), output_(&output) {}
+
+  /// @param span  a part of the source
+  void replace(std::string_view span, std::string_view text);
+  void finish();
+
+ private:
+  const MeshSource* source_;
+  OutputFile* output_;
+  std::size_t position_ = 0;  ///< everything before it is written
+};
+
+/// Calls replace(patcher, node) for each node that moved, in order, and copies all else.
+template <typename Replace>
+void patch_moved_nodes(const Mesh& mesh, OutputFile& output, Replace replace) {
+  TextPatcher patcher(*mesh.source, output);
+  for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
+    if (!same_bits(mesh.source->positions[i], mesh.nodes[i])) replace(patcher, i);
+  patcher.finish();
+}
+
+std::string shortest(double value);  ///< decimals that read back exactly
 
 /// The number that a format, or the source's own, holds for a value: nearest float32, or the value
 /// itself.

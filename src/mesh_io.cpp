@@ -243,6 +243,8 @@ std::string checksum(const Mesh& mesh) {
 }
 
 double coordinate_spacing(const Mesh& mesh) {
+  if (mesh.source != nullptr && detail::file_format(mesh.format).spacing != nullptr)
+    if (const double own = detail::file_format(mesh.format).spacing(mesh); own > 0) return own;
   double largest = 0;
   for (const Vec3& x : mesh.nodes) largest = std::max(largest, x.lpNorm<Eigen::Infinity>());
   const bool is_float =

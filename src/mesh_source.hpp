@@ -56,7 +56,8 @@ class MeshSource {
   bool swap_bytes = false;               ///< the file's byte order is not this machine's
   std::uint64_t topology = 0;            ///< topology_hash of the mesh as it was read
   std::vector<Vec3> positions;           ///< n positions as they were read
-  std::vector<std::uint64_t> offsets;    ///< n offsets of first coordinates, ascending; not for STL
+  std::vector<std::uint64_t> offsets;    ///< n offsets of first coordinates, or of the
+                                         ///< records that hold them, ascending; not for STL
   std::vector<detail::StlFacet> facets;  ///< STL only, ascending
   int n_coordinates = 3;  ///< of each node and vector; 2 for a plane mesh, whose z is 0
   char comment = '\0';    ///< begins a comment that ends with its line; '\0' for none

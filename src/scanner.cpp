@@ -132,18 +132,6 @@ std::string printable(std::string_view text) {
 
 std::string quoted(std::string_view text) { return '"' + printable(text) + '"'; }
 
-bool equal_ignoring_case(std::string_view a, std::string_view b) {
-  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [&](char x, char y) { return lower(x) == lower(y); });
-}
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
-  return text;
-}
-
 FileBytes without_comments(const FileBytes& file, char mark) {
   FileBytes copy{file.path, std::make_unique_for_overwrite<char[]>(file.size + 1), file.size};
   bool is_comment = false;

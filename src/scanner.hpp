@@ -14,6 +14,7 @@
 #include "roughmesh/mesh_io.hpp"
 
 #include "mesh_source.hpp"
+#include "text.hpp"
 
 namespace roughmesh::detail {
 
@@ -109,8 +110,6 @@ class Scanner {
 std::string printable(std::string_view text);
 std::string quoted(std::string_view text);  ///< likewise, in quotes
 
-bool equal_ignoring_case(std::string_view a, std::string_view b);  ///< of ASCII letters
-std::string_view trimmed(std::string_view text);                   ///< without space at its ends
 
 /// A copy of a text in which comments, from the mark to the end of their line, are spaces: what is
 /// read from it stands at the same offsets in the file.

@@ -84,7 +84,8 @@ void check_text_output(const std::filesystem::path& path);
 std::string checksum(const Mesh& mesh);
 
 /// Largest distance between neighbouring numbers of the source's number format at the coordinates
-/// of the mesh: 2^-23 of a coordinate's binade for binary STL, 2^-52 otherwise. A length.
+/// of the mesh: 2^-23 of a coordinate's binade for binary STL, a unit of the last digit of a
+/// field of 16 characters for Nastran, 2^-52 of the binade otherwise. A length.
 double coordinate_spacing(const Mesh& mesh);
 
 /// Removes what an unfinished write_mesh or write_text left beside its path; kills a gmsh that runs
