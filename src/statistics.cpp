@@ -36,10 +36,11 @@ struct MaskedField {
   double share(std::size_t i) const { return areas.of_point[i] / areas.total; }
 };
 
-// Points by weight, equal ones in canonical order, so that strata have one weight each.
+// Points with an area by weight, equal ones in canonical order: strata have one weight each.
 std::vector<std::size_t> sorted_by_weight(const MaskedField& field) {
-  std::vector<std::size_t> points(field.weights.size());
-  std::iota(points.begin(), points.end(), std::size_t{0});
+  std::vector<std::size_t> points;
+  for (std::size_t i = 0; i < field.weights.size(); ++i)
+    if (field.areas.of_point[i] > 0) points.push_back(i);
   std::stable_sort(points.begin(), points.end(), [&](std::size_t i, std::size_t j) {
     return field.weights[i] < field.weights[j];
   });
@@ -61,10 +62,9 @@ void append_middles(const MaskedField& field, std::span<const std::size_t> point
 // Points of weight 0 are all alike: one stands for them, however small the rest of the surface is.
 std::vector<Source> sampled_sources(const MaskedField& field) {
   const std::vector<std::size_t> points = sorted_by_weight(field);
-  const auto n_still =
-      static_cast<std::size_t>(std::count(field.weights.begin(), field.weights.end(), 0.0));
-  const std::span still(points.data(), n_still);
-  const std::span moved(points.data() + n_still, points.size() - n_still);
+  const auto first_moved = std::find_if(points.begin(), points.end(),
+                                        [&](std::size_t i) { return field.weights[i] > 0; });
+  const std::span still(points.begin(), first_moved), moved(first_moved, points.end());
   const auto share_of = [&](std::span<const std::size_t> some) {
     return std::accumulate(some.begin(), some.end(), 0.0,
                            [&](double sum, std::size_t i) { return sum + field.share(i); });
