@@ -382,6 +382,23 @@ TEST(Mask, NumberingAndThreadsChangeNoBit) {
   }
 }
 
+// A warped quadrangle is the same whichever corner the file names first.
+TEST(Mask, QuadranglesHaveNoPreferredDiagonal) {
+  Mesh mesh = test::cell_box(ElementShape::hexahedron, 4);
+  for (Vec3& x : mesh.nodes) x.z() += 0.2 * std::sin(9 * x.x()) * std::sin(8 * x.y());
+  const auto weights_of = [](const Mesh& some) {
+    return mask_weights(some, select_surface(some, {.groups = {"top"}}),
+                        {.fade = {{.width = 0.9, .group = "middle"}}});
+  };
+  const std::vector<double> weights = weights_of(mesh);
+  EXPECT_LT(*std::max_element(weights.begin(), weights.end()), 1);
+  EXPECT_GT(*std::min_element(weights.begin(), weights.end()), 0);
+  std::vector<Index>& middle = mesh.blocks[0].nodes;
+  for (std::size_t e = 0; e < middle.size(); e += 8)  // every second one
+    std::rotate(&middle[e], &middle[e + 1], &middle[e + 4]);
+  EXPECT_EQ(weights, weights_of(mesh));
+}
+
 // Nodes at one position up to round-off are one point, from which its group is at distance 0.
 TEST(Mask, GroupsOnWeldedNodesAreAtDistanceZero) {
   Mesh mesh = test::plate(4);
@@ -396,6 +413,19 @@ TEST(Mask, GroupsOnWeldedNodesAreAtDistanceZero) {
   ASSERT_EQ(point, surface.point_of_node[centre]);
   EXPECT_EQ(mask_weights(mesh, surface, {.fade = {{.width = 0.3, .group = "twin"}}})[point], 0);
   EXPECT_EQ(mask_weights(mesh, surface, {.fixed = {"twin"}})[point], 0);
+}
+
+TEST(Mask, AGroupBesideTheSurfaceCountsAsFarAsItReaches) {
+  for (const Vec3& place : {Vec3(1.2, 0.5, 0), Vec3(-0.2, 0.5, 0), Vec3(0.5, 0.5, 0.3)}) {
+    Mesh mesh = test::plate(8);
+    mesh.nodes.push_back(place);
+    test::number_nodes(mesh);
+    add_group(mesh, point_type, 5, "post", {mesh.n_nodes() - 1});
+    const Surface surface = select_surface(mesh, {.groups = {"surface"}});
+    expect_weights(surface,
+                   mask_weights(mesh, surface, {.fade = {{.width = 0.5, .group = "post"}}}),
+                   [&](const Vec3& x) { return step((x - place).norm() / 0.5); });
+  }
 }
 
 TEST(Mask, AFarGroupFadesNothing) {
