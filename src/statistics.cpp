@@ -37,27 +37,45 @@ struct MaskedField {
   double share(std::size_t i) const { return areas.of_point[i] / areas.total; }
 };
 
-// Points in the middle of strata of equal area in canonical order, among those whose weight is not
-// 0, which are all alike: one stands for them, however small the rest of the surface is. No random
-// number, so the same on every machine.
+// Points with an area by weight, equal ones in canonical order: strata have one weight each.
+std::vector<std::size_t> sorted_by_weight(const MaskedField& field) {
+  std::vector<std::size_t> points;
+  for (std::size_t i = 0; i < field.weights.size(); ++i)
+    if (field.areas.of_point[i] > 0) points.push_back(i);
+  std::stable_sort(points.begin(), points.end(), [&](std::size_t i, std::size_t j) {
+    return field.weights[i] < field.weights[j];
+  });
+  return points;
+}
+
+// The points in the middle of strata of equal area, from a list of more points than strata. No
+// random number, so the same on every machine.
+void append_middles(const MaskedField& field, std::span<const std::size_t> points, double share,
+                    std::vector<Source>& sources) {
+  const double stratum = share / n_sampled_sources;
+  double passed = 0, middle = stratum / 2;
+  for (const std::size_t i : points) {
+    passed += field.share(i);
+    for (; stratum > 0 && middle <= passed; middle += stratum) sources.push_back({i, stratum});
+  }
+}
+
+// Points of weight 0 are all alike: one stands for them, however small the rest of the surface is.
 std::vector<Source> sampled_sources(const MaskedField& field) {
+  const std::vector<std::size_t> points = sorted_by_weight(field);
+  const auto first_moved = std::find_if(points.begin(), points.end(),
+                                        [&](std::size_t i) { return field.weights[i] > 0; });
+  const std::span still(points.begin(), first_moved), moved(first_moved, points.end());
+  const auto share_of = [&](std::span<const std::size_t> some) {
+    return std::accumulate(some.begin(), some.end(), 0.0,
+                           [&](double sum, std::size_t i) { return sum + field.share(i); });
+  };
   std::vector<Source> sources;
-  Source unmoved;
-  double moved = 0;
-  for (std::size_t i = 0; i < field.weights.size(); ++i) {
-    if (field.weights[i] > 0)
-      moved += field.share(i);
-    else
-      unmoved = {i, unmoved.weight + field.share(i)};
-  }
-  double passed = 0;
-  for (std::size_t i = 0; i < field.weights.size() && sources.size() < n_sampled_sources; ++i) {
-    if (field.weights[i] > 0) passed += field.share(i);
-    while (sources.size() < n_sampled_sources &&
-           passed * n_sampled_sources >= (static_cast<double>(sources.size()) + 0.5) * moved)
-      sources.push_back({i, moved / n_sampled_sources});
-  }
-  if (unmoved.weight > 0) sources.push_back(unmoved);
+  if (!still.empty()) sources.push_back({still.front(), share_of(still)});
+  if (moved.size() > n_sampled_sources)
+    append_middles(field, moved, share_of(moved), sources);
+  else
+    for (const std::size_t i : moved) sources.push_back({i, field.share(i)});
   return sources;
 }
 

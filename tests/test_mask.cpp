@@ -18,6 +18,7 @@
 #include "smooth_step.hpp"
 #include "support/cells.hpp"
 #include "support/errors.hpp"
+#include "support/groups.hpp"
 #include "support/meshes.hpp"
 
 using namespace roughmesh;
@@ -37,31 +38,6 @@ bool contains(const std::string& text, const std::string& part) {
 
 double step(double t) {
   return t <= 0 ? 0 : t >= 1 ? 1 : std::pow(t, 3) * (6 * t * t - 15 * t + 10);
-}
-
-// A group of elements of one dimension, added to a mesh.
-void add_group(Mesh& mesh, ElementType type, Tag tag, const std::string& name,
-               std::vector<Index> nodes) {
-  mesh.blocks.push_back(test::make_block(type, 100 + tag, {tag}, std::move(nodes), 100000));
-  mesh.groups.push_back({dimension(type.shape), tag, name});
-  std::sort(mesh.groups.begin(), mesh.groups.end(), [](const auto& a, const auto& b) {
-    return std::pair(a.dimension, a.tag) < std::pair(b.dimension, b.tag);
-  });
-}
-
-constexpr ElementType point_type{ElementShape::point, 1, 1};
-constexpr ElementType line_type{ElementShape::line, 1, 2};
-
-// [0, 1]^2 in `divisions` squares, its four sides being the line group "rim" (7).
-Mesh framed_plate(int divisions) {
-  Mesh mesh = test::plate(divisions);
-  const auto node = [&](int i, int j) { return static_cast<Index>(j * (divisions + 1) + i); };
-  std::vector<Index> lines;
-  for (int i = 0; i < divisions; ++i)
-    for (const int end : {0, divisions})
-      lines.insert(lines.end(), {node(i, end), node(i + 1, end), node(end, i), node(end, i + 1)});
-  add_group(mesh, line_type, 7, "rim", lines);
-  return mesh;
 }
 
 // The part of a sphere above z = 0.35: an open surface with a ragged border.
@@ -92,7 +68,7 @@ struct Arc {
     }
     std::vector<Index> lines;
     for (int i = 0; i < n; ++i) lines.insert(lines.end(), {i, (i + 1) % n_points});
-    mesh.blocks = {test::make_block(line_type, 1, {1}, lines, 1)};
+    mesh.blocks = {test::make_block(test::line_type, 1, {1}, lines, 1)};
     mesh.groups = {{1, 1, "arc"}};
     test::number_nodes(mesh);
     curve.dimension = 1;
@@ -166,7 +142,7 @@ TEST(Mask, WithoutMasksEveryWeightIsOne) {
 }
 
 TEST(Mask, FadeOnAPlateIsTheStepOfTheDistanceToItsSides) {
-  const Mesh mesh = framed_plate(20);
+  const Mesh mesh = test::framed_plate(20);
   const Surface surface = select_surface(mesh);
   const std::vector<double> weights = mask_weights(mesh, surface, {.fade = {{.width = 0.3}}});
   const auto to_side = [](const Vec3& x) { return std::min({x.x(), 1 - x.x(), x.y(), 1 - x.y()}); };
@@ -236,14 +212,15 @@ TEST(Mask, FadeOnACurveStartsFromItsEnds) {
 }
 
 TEST(Mask, FadeStartsFromElementsOfAnyDimension) {
-  Mesh mesh = framed_plate(20);
+  Mesh mesh = test::framed_plate(20);
   const Index centre = 10 * 21 + 10, east = 10 * 21 + 20;
-  add_group(mesh, point_type, 5, "middle", {centre});
-  add_group(mesh, line_type, 6, "beam", {centre, east});  // one long line over ten squares
+  test::add_group(mesh, test::point_type, 5, "middle", {centre});
+  test::add_group(mesh, test::line_type, 6, "beam",
+                  {centre, east});  // one long line over ten squares
   const auto apex = mesh.n_nodes();
   mesh.nodes.emplace_back(0.5, 0.5, 0.2);
   test::number_nodes(mesh);
-  add_group(mesh, test::tetrahedron_type, 9, "tent", {0, 20, 20 * 21, apex});
+  test::add_group(mesh, test::tetrahedron_type, 9, "tent", {0, 20, 20 * 21, apex});
   const Surface surface = select_surface(mesh, {.groups = {"surface"}});
   const auto fade = [&](const std::string& group) {
     return mask_weights(mesh, surface, {.fade = {{.width = 0.25, .group = group}}});
@@ -259,9 +236,9 @@ TEST(Mask, FadeStartsFromElementsOfAnyDimension) {
 }
 
 TEST(Mask, OneDimensionBelowTheSurfaceIsPreferred) {
-  Mesh mesh = framed_plate(8);
-  add_group(mesh, point_type, 7, "corner", {0});
-  add_group(mesh, point_type, 3, "lone", {0});
+  Mesh mesh = test::framed_plate(8);
+  test::add_group(mesh, test::point_type, 7, "corner", {0});
+  test::add_group(mesh, test::point_type, 3, "lone", {0});
   const Surface surface = select_surface(mesh, {.groups = {"surface"}});
   const auto fade = [&](const std::string& group) {
     return mask_weights(mesh, surface, {.fade = {{.width = 0.25, .group = group}}});
@@ -272,8 +249,8 @@ TEST(Mask, OneDimensionBelowTheSurfaceIsPreferred) {
 }
 
 TEST(Mask, FixedPointsAreThoseOnElementsOfTheGroup) {
-  Mesh mesh = framed_plate(6);
-  add_group(mesh, point_type, 5, "middle", {3 * 7 + 3});
+  Mesh mesh = test::framed_plate(6);
+  test::add_group(mesh, test::point_type, 5, "middle", {3 * 7 + 3});
   const Surface surface = select_surface(mesh, {.groups = {"surface"}});
   const auto on_rim = [](const Vec3& x) {
     return x.x() == 0 || x.x() == 1 || x.y() == 0 || x.y() == 1;
@@ -340,8 +317,8 @@ TEST(Mask, ABallIsOneInsideAndFadesOutside) {
 
 // One rounding for each of six factors up to 1.
 TEST(Mask, MasksCombineByTheirProduct) {
-  Mesh mesh = framed_plate(12);
-  add_group(mesh, point_type, 5, "corner", {0});
+  Mesh mesh = test::framed_plate(12);
+  test::add_group(mesh, test::point_type, 5, "corner", {0});
   const Surface surface = select_surface(mesh, {.groups = {"surface"}});
   const MaskOptions all{.fade = {{.width = 0.4}, {.width = 0.8, .group = "corner"}},
                         .fixed = {"corner"},
@@ -382,6 +359,23 @@ TEST(Mask, NumberingAndThreadsChangeNoBit) {
   }
 }
 
+// A warped quadrangle is the same whichever corner the file names first.
+TEST(Mask, QuadranglesHaveNoPreferredDiagonal) {
+  Mesh mesh = test::cell_box(ElementShape::hexahedron, 4);
+  for (Vec3& x : mesh.nodes) x.z() += 0.2 * std::sin(9 * x.x()) * std::sin(8 * x.y());
+  const auto weights_of = [](const Mesh& some) {
+    return mask_weights(some, select_surface(some, {.groups = {"top"}}),
+                        {.fade = {{.width = 0.9, .group = "middle"}}});
+  };
+  const std::vector<double> weights = weights_of(mesh);
+  EXPECT_LT(*std::max_element(weights.begin(), weights.end()), 1);
+  EXPECT_GT(*std::min_element(weights.begin(), weights.end()), 0);
+  std::vector<Index>& middle = mesh.blocks[0].nodes;
+  for (std::size_t e = 0; e < middle.size(); e += 8)  // every second one
+    std::rotate(&middle[e], &middle[e + 1], &middle[e + 4]);
+  EXPECT_EQ(weights, weights_of(mesh));
+}
+
 // Nodes at one position up to round-off are one point, from which its group is at distance 0.
 TEST(Mask, GroupsOnWeldedNodesAreAtDistanceZero) {
   Mesh mesh = test::plate(4);
@@ -390,7 +384,7 @@ TEST(Mask, GroupsOnWeldedNodesAreAtDistanceZero) {
   mesh.nodes.emplace_back(0.5, 0.5, 1.0);
   test::number_nodes(mesh);
   mesh.blocks.push_back(test::make_block(test::triangle_type, 1, {1}, {twin, east, twin + 1}, 900));
-  add_group(mesh, point_type, 5, "twin", {twin});
+  test::add_group(mesh, test::point_type, 5, "twin", {twin});
   const Surface surface = select_surface(mesh, {.groups = {"surface"}});
   const Index point = surface.point_of_node[twin];  // every node is on the surface
   ASSERT_EQ(point, surface.point_of_node[centre]);
@@ -398,11 +392,24 @@ TEST(Mask, GroupsOnWeldedNodesAreAtDistanceZero) {
   EXPECT_EQ(mask_weights(mesh, surface, {.fixed = {"twin"}})[point], 0);
 }
 
+TEST(Mask, AGroupBesideTheSurfaceCountsAsFarAsItReaches) {
+  for (const Vec3& place : {Vec3(1.2, 0.5, 0), Vec3(-0.2, 0.5, 0), Vec3(0.5, 0.5, 0.3)}) {
+    Mesh mesh = test::plate(8);
+    mesh.nodes.push_back(place);
+    test::number_nodes(mesh);
+    test::add_group(mesh, test::point_type, 5, "post", {mesh.n_nodes() - 1});
+    const Surface surface = select_surface(mesh, {.groups = {"surface"}});
+    expect_weights(surface,
+                   mask_weights(mesh, surface, {.fade = {{.width = 0.5, .group = "post"}}}),
+                   [&](const Vec3& x) { return step((x - place).norm() / 0.5); });
+  }
+}
+
 TEST(Mask, AFarGroupFadesNothing) {
   Mesh mesh = test::plate(4);
   mesh.nodes.emplace_back(0, 0, 5);
   test::number_nodes(mesh);
-  add_group(mesh, point_type, 5, "far", {mesh.n_nodes() - 1});
+  test::add_group(mesh, test::point_type, 5, "far", {mesh.n_nodes() - 1});
   const Surface surface = select_surface(mesh, {.groups = {"surface"}});
   EXPECT_EQ(mask_weights(mesh, surface, {.fade = {{.width = 1, .group = "far"}}}),
             std::vector<double>(25, 1.0));
@@ -412,7 +419,7 @@ TEST(Mask, AFarGroupFadesNothing) {
 }
 
 TEST(Mask, RefusalsNameTheValueAndTheRemedy) {
-  Mesh mesh = framed_plate(4);
+  Mesh mesh = test::framed_plate(4);
   mesh.groups.push_back({2, 9, "empty"});
   const Surface surface = select_surface(mesh, {.groups = {"surface"}});
   for (const double width : {0.0, -1.0, infinity, not_a_number}) {
@@ -452,7 +459,7 @@ TEST(Mask, APositionThatIsNoNumberIsTold) {
   Mesh mesh = test::plate(4);
   mesh.nodes.emplace_back(not_a_number, 0, 0);
   test::number_nodes(mesh);
-  add_group(mesh, line_type, 5, "torn", {0, mesh.n_nodes() - 1});
+  test::add_group(mesh, test::line_type, 5, "torn", {0, mesh.n_nodes() - 1});
   const Surface surface = select_surface(mesh, {.groups = {"surface"}});
   EXPECT_EQ(refusal(mesh, surface, {.fade = {{.width = 1, .group = "torn"}}}),
             "element 100000 has a coordinate that is not finite; mend the mesh");
@@ -465,7 +472,7 @@ TEST(Mask, ASurfaceOfAnotherMeshIsRefused) {
 
 // A unit of length is a factor of everything.
 TEST(Mask, WeightsDoNotDependOnTheUnit) {
-  const Mesh mesh = framed_plate(8);
+  const Mesh mesh = test::framed_plate(8);
   const std::vector<double> weights =
       mask_weights(mesh, select_surface(mesh, {.groups = {"surface"}}), {.fade = {{.width = 0.3}}});
   for (const double unit : {0x1p-40, 0x1p40}) {
@@ -477,7 +484,7 @@ TEST(Mask, WeightsDoNotDependOnTheUnit) {
 }
 
 TEST(Mask, FullWeightAreasAreThoseOfWeightOne) {
-  const Mesh mesh = framed_plate(10);
+  const Mesh mesh = test::framed_plate(10);
   const Surface surface = select_surface(mesh, {.groups = {"surface"}});
   const std::vector<double> weights = mask_weights(mesh, surface, {.fade = {{.width = 0.25}}});
   const std::vector<double> areas = full_weight_areas(surface, weights);
