@@ -13,29 +13,17 @@
 #include "support/files.hpp"
 #include "support/meshes.hpp"
 #include "support/msh_files.hpp"
+#include "support/refusals.hpp"
 
 using namespace roughmesh;
+using test::expect_error;
+using test::Kind;
 using test::MshStyle;
+using test::replaced;
 
 namespace {
 
-enum class Kind { format_error, input_error };
-
-struct Case {
-  std::string name;  // letters, digits and underscores
-  std::string file;
-  std::string bytes;
-  Kind kind = Kind::format_error;
-  std::string part_of_message = {};
-};
-
-void PrintTo(const Case& c, std::ostream* stream) { *stream << c.name; }
-
-std::string replaced(std::string bytes, const std::string& what, const std::string& by) {
-  const std::size_t place = bytes.find(what);
-  if (place == std::string::npos) throw std::logic_error("test: nothing to replace: " + what);
-  return bytes.replace(place, what.size(), by);
-}
+using Case = test::Refusal;
 
 Mesh triangle() {
   Mesh mesh;
@@ -259,7 +247,7 @@ void add_others(std::vector<Case>& cases) {
   cases.push_back({"noise_msh", "a.msh", noise(1000)});
   cases.push_back({"noise_stl", "a.stl", noise(1000)});
   cases.push_back({"noise_unknown", "a.dat", noise(1000), Kind::input_error, "convert it"});
-  cases.push_back({"unread_kind", "a.obj", "v 0 0 0\n", Kind::input_error, "convert it"});
+  cases.push_back({"unread_kind", "a.3mf", "v 0 0 0\n", Kind::input_error, "convert it"});
   cases.push_back(
       {"msh_version_1", "a.msh", "$NOD\n1\n1 0 0 0\n$ENDNOD\n", Kind::input_error, "version 1"});
   cases.push_back(
@@ -309,30 +297,11 @@ std::vector<Case> all_cases() {
   return cases;
 }
 
-// What reading the file throws, as one line that names it.
-void expect_error(const std::filesystem::path& path, Kind kind, const std::string& part) {
-  std::string message = "no error";
-  try {
-    read_mesh(path);
-  } catch (const FormatError& error) {
-    EXPECT_EQ(kind, Kind::format_error) << error.what();
-    message = error.what();
-  } catch (const InputError& error) {
-    EXPECT_EQ(kind, Kind::input_error) << error.what();
-    message = error.what();
-  }
-  EXPECT_EQ(message.find(path.string()), 0) << message;
-  EXPECT_NE(message.find(part), std::string::npos) << message;
-  EXPECT_EQ(message.find_first_of("\n\r"), std::string::npos) << message;
-  EXPECT_LT(message.size(), path.string().size() + 200) << message;
-}
-
 class Malformed : public testing::TestWithParam<Case> {};
 
 TEST_P(Malformed, IsRefusedInOneLine) {
   const test::TemporaryFolder folder;
-  test::write_bytes(folder / GetParam().file, GetParam().bytes);
-  expect_error(folder / GetParam().file, GetParam().kind, GetParam().part_of_message);
+  test::expect_refusal(folder, GetParam());
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, Malformed, testing::ValuesIn(all_cases()),
