@@ -181,8 +181,9 @@ Report roughen(const Mesh& mesh, const RoughenOptions& options, const Deliver& d
     rough.realization = options.first + k;
     const std::vector<double> heights =
         timed(t.field, [&] { return heights_of(sampler, options, rough.realization); });
-    const std::vector<Vec3> displacements =
-        timed(t.displace, [&] { return displace_nodes(surfaces, {&heights, 1}); });
+    const std::vector<Vec3> displacements = timed(t.displace, [&] {
+      return displace_nodes(surfaces, {&heights, 1});
+    });
     rough.mesh.nodes = timed(t.volume, [&] { return mover.move(displacements); });
     rough.check = timed(t.check, [&] { return check_mesh(mesh, rough.mesh.nodes); });
     refuse_invalid(rough, remedy(rho, mover), report);

@@ -90,8 +90,8 @@ FaceSums face_sums(const Surface& surface, const Autocorrelation& autocorrelatio
     for (std::size_t f = begin; f < end; ++f) {
       const auto face = surface.face(static_cast<Index>(f));
       if (surface.dimension == 1)
-        part += line_sums(surface.points[face[0]], surface.points[face[1]], autocorrelation,
-                          distance);
+        part +=
+            line_sums(surface.points[face[0]], surface.points[face[1]], autocorrelation, distance);
       for (std::size_t k = 2; k < face.size(); ++k)
         part += triangle_sums(
             {surface.points[face[0]], surface.points[face[k - 1]], surface.points[face[k]]},
@@ -106,8 +106,8 @@ FaceSums face_sums(const Surface& surface, const Autocorrelation& autocorrelatio
 // ---- Largest height ----
 
 // Area and half the border of the surface, lengths being those of the field: the root mean square
-// difference of two heights (docs/math.md, eq. 24). A curve has no area, and its whole length counts
-// as the half border of a surface does (eq. 39).
+// difference of two heights (docs/math.md, eq. 24). A curve has no area, and its whole length
+// counts as the half border of a surface does (eq. 39).
 struct FieldSize {
   double area = 0;
   double half_border = 0;

@@ -51,9 +51,8 @@ void warn_of_surface(Report& report, const Surface& surface) {
         "gap opens or closes there; choose the {} of both sides if they belong together",
         surface.n_coincident_nodes, is_curve ? "lines" : "faces", is_curve ? "lines" : "faces"));
   if (surface.n_duplicate_faces > 0)
-    report.warnings.push_back(fmt::format(
-        "{} {} stand on the nodes of another one and count once", surface.n_duplicate_faces,
-        is_curve ? "lines" : "faces"));
+    report.warnings.push_back(fmt::format("{} {} stand on the nodes of another one and count once",
+                                          surface.n_duplicate_faces, is_curve ? "lines" : "faces"));
 }
 
 void warn_of_scale(Report& report, const Mesh& mesh, const Surface& surface) {
@@ -99,10 +98,11 @@ void warn_of_field(Report& report) {
 
 void warn_of_curved_elements(Report& report, const MeshCheck& check) {
   if (check.n_curved > 0)
-    report.warnings.push_back(fmt::format(
-        "{} curved elements were checked at their corners only; look at them with the checks of your "
-        "solver, or use linear elements",
-        check.n_curved));
+    report.warnings.push_back(
+        fmt::format("{} curved elements were checked at their corners only; look at them with the "
+                    "checks of your "
+                    "solver, or use linear elements",
+                    check.n_curved));
 }
 
 void warn_of_walls(Report& report, const VolumeMover& mover) {

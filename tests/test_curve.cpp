@@ -193,9 +193,10 @@ TEST(Curve, CollapsedAndDoubleLinesAreTakenOut) {
 TEST(Curve, APointWithoutNormalIsRefused) {
   Mesh mesh = test::polyline({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}}, false);
   mesh.blocks[0].nodes = {0, 1, 0, 2, 0, 3, 0, 4};
-  EXPECT_EQ(message_of(mesh, {}),
-            "node 1 at (0, 0, 0) has no normal: its lines have no length or cancel each other; mend "
-            "the mesh there");
+  EXPECT_EQ(
+      message_of(mesh, {}),
+      "node 1 at (0, 0, 0) has no normal: its lines have no length or cancel each other; mend "
+      "the mesh there");
 }
 
 TEST(Curve, GroupsOfAPlanarMesh) {
@@ -210,7 +211,8 @@ TEST(Curve, GroupsOfAPlanarMesh) {
   const std::string choice =
       "groups of lines: hole (1), interface (2), rim (3); surface groups, which move out of the "
       "plane: core (1), shell (2)";
-  EXPECT_EQ(message_of(mesh, {}), "several groups could become rough, choose among them; " + choice);
+  EXPECT_EQ(message_of(mesh, {}),
+            "several groups could become rough, choose among them; " + choice);
   EXPECT_EQ(message_of(mesh, {"gold"}), "there is no physical group 'gold'; " + choice);
   EXPECT_EQ(message_of(mesh, {"rim", "shell"}),
             "physical groups rim and shell (2) have dimensions 1 and 2; choose groups of one "
@@ -232,8 +234,9 @@ TEST(Curve, GroupsOfAPlanarMesh) {
 TEST(Curve, LinesOutOfAPlaneAreRefusedWithTheReason) {
   Mesh mesh = test::ring(16);
   mesh.nodes[5].z() = 0.1;
-  EXPECT_EQ(message_of(mesh, {"rim"}).find("physical group 'rim' has dimension 1, not 2: lines "
-                                           "become rough in planar meshes only, and node "),
+  EXPECT_EQ(message_of(mesh, {"rim"})
+                .find("physical group 'rim' has dimension 1, not 2: lines "
+                      "become rough in planar meshes only, and node "),
             0u);
   EXPECT_EQ(select_surface(mesh, {.groups = {"core"}}).dimension, 2);
   const Mesh helix = test::polyline({{1, 0, 0}, {0, 1, 0.3}, {-1, 0, 0.6}, {0, -1, 1}}, false);

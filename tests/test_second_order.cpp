@@ -146,10 +146,10 @@ TEST(SecondOrder, SidesHaveTheirNodes) {
                           .norm(),
                       0, 1e-15);
         if (face.type.n_nodes == 9) {
-          EXPECT_NEAR((mesh.nodes[nodes[face.nodes[8]]] -
-                       mean(mesh, nodes, std::span(face.nodes).first(4)))
-                          .norm(),
-                      0, 1e-15);
+          EXPECT_NEAR(
+              (mesh.nodes[nodes[face.nodes[8]]] - mean(mesh, nodes, std::span(face.nodes).first(4)))
+                  .norm(),
+              0, 1e-15);
         }
       }
     }
@@ -169,10 +169,9 @@ TEST(SecondOrder, BoundaryOfABoxOfEveryShape) {
       EXPECT_EQ(boundary.n_components, 1);
       EXPECT_NEAR(boundary.area, 6, 1e-13);
       EXPECT_NEAR(enclosed_volume(boundary, boundary.points), 1, 1e-13);
-      const auto n_on_sides =
-          std::count_if(mesh.nodes.begin(), mesh.nodes.end(), [](const Vec3& x) {
-            return x.minCoeff() < 1e-12 || x.maxCoeff() > 1 - 1e-12;
-          });
+      const auto n_on_sides = std::count_if(
+          mesh.nodes.begin(), mesh.nodes.end(),
+          [](const Vec3& x) { return x.minCoeff() < 1e-12 || x.maxCoeff() > 1 - 1e-12; });
       EXPECT_EQ(boundary.n_points(), n_on_sides);
       EXPECT_EQ(boundary.mesh_size.min, 0.125);  // half an edge
     }
@@ -212,17 +211,15 @@ TEST(SecondOrder, OrientationIsThatOfTheLinearMesh) {
 // The values at the middles are exact for quadratic functions on ideal squares and cubes.
 TEST(SecondOrder, MiddlesInterpolateQuadraticFunctions) {
   const auto f = [](const Vec3& x) {
-    return 1 + 2 * x.x() - x.y() + 3 * x.z() + x.x() * x.x() - 2 * x.y() * x.y() + 5 * x.z() * x.z() +
-           7 * x.x() * x.y() - 4 * x.y() * x.z() + 6 * x.x() * x.z();
+    return 1 + 2 * x.x() - x.y() + 3 * x.z() + x.x() * x.x() - 2 * x.y() * x.y() +
+           5 * x.z() * x.z() + 7 * x.x() * x.y() - 4 * x.y() * x.z() + 6 * x.x() * x.z();
   };
   int n_middles = 0;
-  for (const ElementShape shape :
-       {ElementShape::quadrangle, ElementShape::hexahedron, ElementShape::prism,
-        ElementShape::pyramid}) {
+  for (const ElementShape shape : {ElementShape::quadrangle, ElementShape::hexahedron,
+                                   ElementShape::prism, ElementShape::pyramid}) {
     const Mesh mesh = single(shape, true);
     const auto nodes = mesh.blocks[0].element(0);
-    for (const detail::FollowingNode& following :
-         detail::following_nodes(mesh.blocks[0].type)) {
+    for (const detail::FollowingNode& following : detail::following_nodes(mesh.blocks[0].type)) {
       double value = 0, weights = 0;
       for (const auto& [other, weight] : following.of_others) {
         EXPECT_LT(other, following.node);
@@ -366,7 +363,8 @@ TEST(SecondOrder, RealMeshesOfHigherOrderAreRefusedByOrder) {
       EXPECT_EQ(message, "no error") << file;
       continue;
     }
-    EXPECT_NE(message.find(fmt::format("of order {}", order)), std::string::npos) << file << message;
+    EXPECT_NE(message.find(fmt::format("of order {}", order)), std::string::npos)
+        << file << message;
     EXPECT_NE(message.find("-order 1 or -order 2"), std::string::npos) << file;
   }
 }

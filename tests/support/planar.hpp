@@ -76,8 +76,8 @@ inline Mesh ring(int n, bool quadrangles = false) {
       quadrangles ? ElementType{ElementShape::quadrangle, 1, 4} : triangle_type;
   mesh.blocks.push_back(make_block(type, 1, {1}, cells[0], 10'001));
   mesh.blocks.push_back(make_block(type, 2, {2}, cells[1], 20'001));
-  mesh.groups = {{1, 1, "hole"}, {1, 2, "interface"}, {1, 3, "rim"}, {2, 1, "core"},
-                 {2, 2, "shell"}};
+  mesh.groups = {
+      {1, 1, "hole"}, {1, 2, "interface"}, {1, 3, "rim"}, {2, 1, "core"}, {2, 2, "shell"}};
   number_nodes(mesh);
   return mesh;
 }
