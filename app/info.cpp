@@ -35,7 +35,9 @@ std::int64_t n_elements_in(const Mesh& mesh, const PhysicalGroup& group) {
   return count;
 }
 
-const char* measure_of(const Surface& surface) { return surface.dimension == 1 ? "length" : "area"; }
+const char* measure_of(const Surface& surface) {
+  return surface.dimension == 1 ? "length" : "area";
+}
 
 /// Area (of lines: length) and edge lengths of a group, or why it has none.
 std::string surface_size(const Mesh& mesh, const PhysicalGroup& group) {

@@ -99,8 +99,9 @@ int main() {
   std::vector<double> heights;
   for (const Vec3& x : surface.points)
     heights.push_back(0.5 / divisions * std::sin(40 * x.x()) * std::cos(40 * x.y()));
-  const std::vector<Vec3> displacements = displace(surface, heights);
-  const VolumeMover mover(mesh, surface);
+  const std::span surfaces(&surface, 1);
+  const std::vector<Vec3> displacements = displace_nodes(surfaces, {&heights, 1});
+  const VolumeMover mover(mesh, surfaces);
   const std::vector<Vec3> moved = mover.move(displacements);
 
   const detail::HarmonicExtension extension = rebuild(mesh, surface);
@@ -112,7 +113,7 @@ int main() {
   fmt::print("one product (reference): {:.2f} ms, {:.1f} GB/s\n", product * 1e3,
              static_cast<double>(stiffness.nonZeros()) * bytes_per_entry / product * 1e-9);
   print("select_surface", seconds([&] { select_surface(mesh, options); }), product);
-  print("VolumeMover, constructor", seconds([&] { const VolumeMover again(mesh, surface); }),
+  print("VolumeMover, constructor", seconds([&] { const VolumeMover again(mesh, surfaces); }),
         product);
   print("VolumeMover::move", seconds([&] { mover.move(displacements); }), product);
   print("check_mesh", seconds([&] { check_mesh(mesh, moved); }), product);

@@ -189,7 +189,7 @@ TEST(Check, FoldedTrianglesOfASurfaceMesh) {
   ASSERT_GT(n_clockwise, 0);
   const MeshCheck check = check_mesh(mesh, moved);
   EXPECT_EQ(check.inverted_elements, n_clockwise);
-  EXPECT_EQ(check.findings.front().what, "folded triangle");
+  EXPECT_EQ(check.findings.front().what, "inverted triangle");
   EXPECT_LT(check.min_quality, 0);
 }
 
@@ -208,7 +208,7 @@ TEST(Check, AConcaveQuadrangleIsFolded) {
   moved[2] = Vec3(0.4, 0.4, 0);
   const MeshCheck check = check_mesh(mesh, moved);
   EXPECT_EQ(check.inverted_elements, 1);
-  EXPECT_EQ(check.findings.front().what, "folded quadrangle");
+  EXPECT_EQ(check.findings.front().what, "inverted quadrangle");
 }
 
 // Faces of a volume mesh and lines of a surface mesh are not what is checked.

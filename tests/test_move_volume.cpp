@@ -16,6 +16,7 @@
 #include "support/cells.hpp"
 #include "support/contact.hpp"
 #include "support/meshes.hpp"
+#include "support/only.hpp"
 
 using namespace roughmesh;
 
@@ -89,7 +90,9 @@ std::vector<detail::Simplex> tetrahedra(const Mesh& mesh) {
 TEST(MoveVolume, ZeroDisplacementChangesNoBit) {
   for (const Mesh& mesh : {test::ball_in_box(8), test::icosphere(2)}) {
     const Surface surface = ball(mesh);
-    EXPECT_EQ(VolumeMover(mesh, surface).move(constant(surface, Vec3::Zero())), mesh.nodes);
+    EXPECT_EQ(VolumeMover(mesh, test::only(surface))
+                  .move(test::at_nodes(surface, constant(surface, Vec3::Zero()))),
+              mesh.nodes);
   }
 }
 
@@ -97,10 +100,10 @@ TEST(MoveVolume, SurfaceNodesMoveAsToldAndOuterNodesStay) {
   const Mesh mesh = test::shuffled(test::ball_in_box(8), 4);
   const Surface surface = ball(mesh);
   const std::vector<Vec3> displacements = displace(surface, bumps(surface, 0.03));
-  const VolumeMover mover(mesh, surface);
+  const VolumeMover mover(mesh, test::only(surface));
   EXPECT_EQ(mover.method(), VolumeMethod::harmonic);
   EXPECT_EQ(mover.n_wall_nodes(), 0);
-  const std::vector<Vec3> moved = mover.move(displacements);
+  const std::vector<Vec3> moved = mover.move(test::at_nodes(surface, displacements));
   for (std::size_t i = 0; i < surface.nodes.size(); ++i)
     EXPECT_EQ(moved[surface.nodes[i]],
               mesh.nodes[surface.nodes[i]] + displacements[surface.point_of_node[i]]);
@@ -119,15 +122,15 @@ TEST(MoveVolume, SurfaceNodesMoveAsToldAndOuterNodesStay) {
 TEST(MoveVolume, VolumesAreThoseOfTheMovedSurface) {
   const Mesh mesh = test::ball_in_box(8);
   const Surface surface = ball(mesh);
-  const VolumeMover mover(mesh, surface);
+  const VolumeMover mover(mesh, test::only(surface));
   const std::vector<Vec3> displacements = displace(surface, bumps(surface, 0.03));
-  const std::vector<Vec3> moved = mover.move(displacements);
+  const std::vector<Vec3> moved = mover.move(test::at_nodes(surface, displacements));
   EXPECT_NEAR(test::tetrahedron_volume(mesh, moved), 8, 1e-12);
   EXPECT_NEAR(test::tetrahedron_volume(mesh, moved, 1),
               enclosed_volume(surface, moved_points(surface, displacements)), 1e-12);
 
   const std::vector<double> up(surface.points.size(), 0.02);
-  const std::vector<Vec3> grown = mover.move(displace(surface, up));
+  const std::vector<Vec3> grown = mover.move(test::at_nodes(surface, displace(surface, up)));
   EXPECT_GT(test::tetrahedron_volume(mesh, grown, 1),
             test::tetrahedron_volume(mesh, mesh.nodes, 1));
   EXPECT_NEAR(test::tetrahedron_volume(mesh, grown), 8, 1e-12);
@@ -140,9 +143,9 @@ TEST(MoveVolume, ConstantsAreReproduced) {
     const Mesh mesh = test::without_faces(test::cell_box(shape, 4));
     const Surface boundary = select_surface(mesh);
     const Vec3 shift(0.3, -0.2, 0.1);
-    const VolumeMover mover(mesh, boundary);
+    const VolumeMover mover(mesh, test::only(boundary));
     EXPECT_EQ(mover.n_wall_nodes(), 0);
-    const std::vector<Vec3> moved = mover.move(constant(boundary, shift));
+    const std::vector<Vec3> moved = mover.move(test::at_nodes(boundary, constant(boundary, shift)));
     for (Index node = 0; node < mesh.n_nodes(); ++node)
       EXPECT_NEAR((moved[node] - mesh.nodes[node] - shift).norm(), 0, 1e-10);
   }
@@ -158,7 +161,8 @@ TEST(MoveVolume, LinearFieldsAreReproducedWhereVolumesAreEqual) {
   gradient << 0.1, 0.2, -0.1, 0.05, -0.15, 0.1, 0.0, 0.2, 0.1;
   std::vector<Vec3> displacements;
   for (const Vec3& x : boundary.points) displacements.push_back(gradient * x);
-  const std::vector<Vec3> moved = VolumeMover(mesh, boundary).move(displacements);
+  const std::vector<Vec3> moved =
+      VolumeMover(mesh, test::only(boundary)).move(test::at_nodes(boundary, displacements));
   for (Index node = 0; node < mesh.n_nodes(); ++node)
     EXPECT_NEAR((moved[node] - mesh.nodes[node] - gradient * mesh.nodes[node]).norm(), 0, 1e-10);
 }
@@ -169,7 +173,8 @@ TEST(MoveVolume, TheDisplacementMinimizesTheWeightedEnergy) {
   const Mesh mesh = test::ball_in_box(8);
   const Surface surface = ball(mesh);
   const std::vector<Vec3> moved =
-      VolumeMover(mesh, surface).move(displace(surface, bumps(surface, 0.05)));
+      VolumeMover(mesh, test::only(surface))
+          .move(test::at_nodes(surface, displace(surface, bumps(surface, 0.05))));
   const std::vector<Vec3> u = difference(moved, mesh.nodes);
   const std::set<Index> on_surface(surface.nodes.begin(), surface.nodes.end());
   std::mt19937 random(5);
@@ -200,7 +205,8 @@ TEST(MoveVolume, EveryShapeMovesWithItsTop) {
     std::vector<Vec3> displacements;
     for (const Vec3& x : top.points)
       displacements.emplace_back(0, 0, -3.2 * x.x() * (1 - x.x()) * x.y() * (1 - x.y()));
-    const std::vector<Vec3> moved = VolumeMover(mesh, top).move(displacements);
+    const std::vector<Vec3> moved =
+        VolumeMover(mesh, test::only(top)).move(test::at_nodes(top, displacements));
     EXPECT_TRUE(check_mesh(mesh, moved).valid()) << name(mesh.blocks[2].type);
     std::vector<Vec3> top_only = mesh.nodes;
     for (Index node = 0; node < mesh.n_nodes(); ++node) {
@@ -218,11 +224,11 @@ TEST(MoveVolume, EveryShapeMovesWithItsTop) {
 TEST(MoveVolume, WallNodesAreCounted) {
   Mesh mesh = test::cell_box(ElementShape::hexahedron, 4);
   const Surface top = select_surface(mesh, {.groups = {"top"}});
-  EXPECT_EQ(VolumeMover(mesh, top).n_wall_nodes(), 16);
+  EXPECT_EQ(VolumeMover(mesh, test::only(top)).n_wall_nodes(), 16);
   const Surface middle = select_surface(mesh, {.groups = {"middle"}});
-  EXPECT_EQ(VolumeMover(mesh, middle).n_wall_nodes(), 16);
+  EXPECT_EQ(VolumeMover(mesh, test::only(middle)).n_wall_nodes(), 16);
   const Mesh plate = test::plate(4);
-  EXPECT_EQ(VolumeMover(plate, select_surface(plate)).n_wall_nodes(), 0);
+  EXPECT_EQ(VolumeMover(plate, test::only(select_surface(plate))).n_wall_nodes(), 0);
 }
 
 // Volumes on either side of a crack have nodes of their own at equal positions.
@@ -231,7 +237,8 @@ TEST(MoveVolume, BothSidesOfACrackMoveTogether) {
   test::detach(mesh, 3, 0);
   const Surface surface = select_surface(mesh, {.groups = {"surface", "far side"}});
   const std::vector<Vec3> moved =
-      VolumeMover(mesh, surface).move(displace(surface, bumps(surface, 0.03)));
+      VolumeMover(mesh, test::only(surface))
+          .move(test::at_nodes(surface, displace(surface, bumps(surface, 0.03))));
   EXPECT_TRUE(check_mesh(mesh, moved).valid());
   EXPECT_NEAR(test::tetrahedron_volume(mesh, moved), 8, 1e-11);
 }
@@ -243,9 +250,10 @@ TEST(MoveVolume, OneSideOfAContactMovesAlone) {
     test::detach(mesh, 3, 0);
     const ElementBlock &lower = mesh.blocks[2], &upper = mesh.blocks[3];
     const Surface surface = select_surface(mesh, {.groups = {"middle"}});
-    const VolumeMover mover(mesh, surface);
+    const VolumeMover mover(mesh, test::only(surface));
     EXPECT_EQ(mover.n_wall_nodes(), 16);  // the rim lies on the sides of the lower body
-    const std::vector<Vec3> moved = mover.move(constant(surface, Vec3(0.01, 0, -0.05)));
+    const std::vector<Vec3> moved =
+        mover.move(test::at_nodes(surface, constant(surface, Vec3(0.01, 0, -0.05))));
     EXPECT_TRUE(check_mesh(mesh, moved).valid());
     for (const Index node : upper.nodes) EXPECT_EQ(moved[node], mesh.nodes[node]);
     for (const Index node : lower.nodes) {
@@ -265,9 +273,10 @@ TEST(MoveVolume, TheBoundaryOfRepeatedElementsStays) {
       test::turn_element(again, e);  // the same corners, in another order
     mesh.blocks.push_back(again);
     const Surface top = select_surface(mesh, {.groups = {"top"}});
-    const VolumeMover mover(mesh, top);
+    const VolumeMover mover(mesh, test::only(top));
     EXPECT_EQ(mover.n_wall_nodes(), 16);
-    const std::vector<Vec3> moved = mover.move(constant(top, Vec3(0, 0, -0.05)));
+    const std::vector<Vec3> moved =
+        mover.move(test::at_nodes(top, constant(top, Vec3(0, 0, -0.05))));
     for (Index node = 0; node < mesh.n_nodes(); ++node) {
       const Vec3& x = mesh.nodes[node];
       const bool is_inner = x.x() > 0 && x.x() < 1 && x.y() > 0 && x.y() < 1 && x.z() > 0.5;
@@ -306,11 +315,12 @@ TEST(MoveVolume, ASurfaceMeshMovesItsSurfaceOnly) {
                  test::make_block(test::triangle_type, 2, {2}, {middle, all.end()}, 101)};
   mesh.groups.push_back({2, 2, "rest"});
   const Surface surface = ball(mesh);
-  const VolumeMover mover(mesh, surface);
+  const VolumeMover mover(mesh, test::only(surface));
   EXPECT_EQ(mover.method(), VolumeMethod::none);
   EXPECT_EQ(name(mover.method()), "none");
   EXPECT_EQ(mover.n_wall_nodes(), 5);
-  const std::vector<Vec3> moved = mover.move(constant(surface, Vec3::UnitZ()));
+  const std::vector<Vec3> moved =
+      mover.move(test::at_nodes(surface, constant(surface, Vec3::UnitZ())));
   for (Index node = 0; node < mesh.n_nodes(); ++node)
     EXPECT_EQ(moved[node].z(), mesh.nodes[node].y() <= 0.5 ? 1 : 0);
 }
@@ -318,9 +328,10 @@ TEST(MoveVolume, ASurfaceMeshMovesItsSurfaceOnly) {
 TEST(MoveVolume, OnDemandTheInteriorStays) {
   const Mesh mesh = test::ball_in_box(8);
   const Surface surface = ball(mesh);
-  const VolumeMover mover(mesh, surface, VolumeMethod::none);
+  const VolumeMover mover(mesh, test::only(surface), VolumeMethod::none);
   EXPECT_EQ(mover.method(), VolumeMethod::none);
-  const std::vector<Vec3> moved = mover.move(constant(surface, Vec3::UnitX()));
+  const std::vector<Vec3> moved =
+      mover.move(test::at_nodes(surface, constant(surface, Vec3::UnitX())));
   const std::set<Index> on_surface(surface.nodes.begin(), surface.nodes.end());
   for (Index node = 0; node < mesh.n_nodes(); ++node)
     EXPECT_EQ(moved[node], mesh.nodes[node] + Vec3(on_surface.contains(node) ? 1 : 0, 0, 0));
@@ -338,7 +349,8 @@ TEST(MoveVolume, FlatElementsDoNoHarm) {
   block.tags.push_back(99999);
   const Surface surface = ball(mesh);
   const std::vector<Vec3> moved =
-      VolumeMover(mesh, surface).move(displace(surface, bumps(surface, 0.03)));
+      VolumeMover(mesh, test::only(surface))
+          .move(test::at_nodes(surface, displace(surface, bumps(surface, 0.03))));
   for (const Vec3& x : moved) EXPECT_TRUE(x.allFinite());
   EXPECT_EQ(moved[a], mesh.nodes[a]);
   EXPECT_TRUE(check_mesh(mesh, moved).valid());
@@ -350,7 +362,7 @@ TEST(MoveVolume, DoesNotDependOnTheNumberOfThreads) {
   const std::vector<Vec3> displacements = displace(surface, bumps(surface, 0.02));
   const auto run = [&](int n_threads) {
     const detail::ThreadLimit limit(n_threads);
-    return VolumeMover(mesh, surface).move(displacements);
+    return VolumeMover(mesh, test::only(surface)).move(test::at_nodes(surface, displacements));
   };
   EXPECT_EQ(run(1), run(2));
 }
@@ -361,8 +373,9 @@ TEST(MoveVolume, ScalingBy1024IsExact) {
   const Mesh large = test::transformed(mesh, Eigen::Affine3d(Eigen::Scaling(1024.0)));
   const auto run = [](const Mesh& m, double size) {
     const Surface surface = ball(m);
-    return VolumeMover(m, surface)
-        .move(displace(surface, std::vector<double>(surface.points.size(), size)));
+    return VolumeMover(m, test::only(surface))
+        .move(test::at_nodes(surface,
+                             displace(surface, std::vector<double>(surface.points.size(), size))));
   };
   const std::vector<Vec3> a = run(mesh, 0.05), b = run(large, 0.05 * 1024);
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(b[i], 1024 * a[i]);
@@ -370,34 +383,111 @@ TEST(MoveVolume, ScalingBy1024IsExact) {
 
 TEST(MoveVolume, ElementsOfHigherOrderAreRefusedWhereTheyWouldMove) {
   Mesh mesh = test::cell_box(ElementShape::tetrahedron, 4);
-  const auto curved = [&](Index corner) {
+  const Mesh linear = mesh;
+  const auto add_cubic = [&](Index corner) {
+    mesh = linear;
     std::vector<Index> nodes = {corner};
-    for (int i = 1; i < 10; ++i) {
+    for (int i = 1; i < 20; ++i) {
       nodes.push_back(mesh.n_nodes());
       mesh.nodes.emplace_back(2 + i, i * i, i % 3);
     }
-    return test::make_block({ElementShape::tetrahedron, 2, 10}, 3, {}, nodes, 777);
+    mesh.blocks.push_back(test::make_block({ElementShape::tetrahedron, 3, 20}, 3, {}, nodes, 777));
+    test::number_nodes(mesh);
   };
-  mesh.blocks.push_back(curved(0));
-  test::number_nodes(mesh);
+  add_cubic(0);  // at the bottom, which stays
   const Surface top = select_surface(mesh, {.groups = {"top"}});
+  EXPECT_EQ(VolumeMover(mesh, test::only(top)).method(), VolumeMethod::harmonic);
+  add_cubic(top.nodes.front());
   try {
-    const VolumeMover mover(mesh, top);
+    const VolumeMover mover(mesh, test::only(top));
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("element 777"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("element 777 is a tetrahedron of order 3"),
+              std::string::npos);
     EXPECT_NE(std::string(error.what()).find("-order 1"), std::string::npos);
   }
+}
+
+// Both surfaces move, what lies between follows both, and a wall is what neither has.
+TEST(MoveVolume, SeveralSurfacesMoveAtOnce) {
+  const Mesh mesh = test::cell_box(ElementShape::prism, 4);
+  const std::vector<Surface> surfaces = {select_surface(mesh, {.groups = {"top"}}),
+                                         select_surface(mesh, {.groups = {"middle"}})};
+  const VolumeMover mover(mesh, surfaces);
+  EXPECT_EQ(mover.n_wall_nodes(), 32);
+  const std::vector<std::vector<double>> heights = {std::vector<double>(25, 0.05),
+                                                    std::vector<double>(25, -0.05)};
+  const std::vector<Vec3> moved = mover.move(displace_nodes(surfaces, heights));
+  for (Index node = 0; node < mesh.n_nodes(); ++node) {
+    const Vec3& x = mesh.nodes[node];
+    const bool is_inside = x.x() > 0 && x.x() < 1 && x.y() > 0 && x.y() < 1;
+    const double shift = moved[node].z() - x.z();
+    if (x.z() == 1 || x.z() == 0.5) {
+      EXPECT_NEAR(shift, x.z() == 1 ? 0.05 : -0.05, 1e-15);
+    } else if (is_inside && x.z() < 0.5 && x.z() > 0) {
+      EXPECT_LT(shift, 0);
+    }
+  }
+  EXPECT_TRUE(check_mesh(mesh, moved).valid());
+}
+
+// Together the interface and the box have no wall; apart they are what one selection of both is.
+TEST(MoveVolume, TwoSurfacesAreLikeOneOfBoth) {
+  const Mesh mesh = test::ball_in_box(8);
+  const std::vector<Surface> apart = {select_surface(mesh, {.groups = {"surface"}}),
+                                      select_surface(mesh, {.groups = {"outer"}})};
+  const Surface together = select_surface(mesh, {.groups = {"surface", "outer"}});
+  const VolumeMover mover(mesh, apart);
+  EXPECT_EQ(mover.n_wall_nodes(), 0);
+  EXPECT_EQ(moved_nodes(apart), together.nodes);
+  std::vector<Vec3> told;
+  for (const Index node : together.nodes)
+    told.push_back(0.01 * Vec3(std::sin(5 * mesh.nodes[node].y()), 1, 0));
+  EXPECT_EQ(mover.move(told), VolumeMover(mesh, test::only(together)).move(told));
+}
+
+TEST(MoveVolume, AFaceInTwoSurfacesIsRefused) {
+  Mesh mesh = test::ball_in_box(4);
+  const auto message = [&](std::vector<std::string> a, std::vector<std::string> b) -> std::string {
+    const std::vector<Surface> surfaces = {select_surface(mesh, {.groups = std::move(a)}),
+                                           select_surface(mesh, {.groups = std::move(b)})};
+    try {
+      const VolumeMover mover(mesh, surfaces);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(message({"surface"}, {"outer"}), "accepted");
+  EXPECT_EQ(message({"surface"}, {"outer", "surface"}).find("element 1 at"), 0u);
+  EXPECT_EQ(message({"outer"}, {"outer"}).find("element 49 at"), 0u);
+  mesh = test::without_faces(mesh);
+  EXPECT_EQ(message({}, {}).find("a face of the boundary at"), 0u);
+}
+
+// Elements behind a wall have no part in the system: cubic ones there do not matter.
+TEST(MoveVolume, BehindUnselectedFacesNothingMoves) {
+  const Mesh mesh = test::ball_in_box(8);
+  const Surface outer = select_surface(mesh, {.groups = {"outer"}});
+  const std::vector<Vec3> moved =
+      VolumeMover(mesh, test::only(outer))
+          .move(test::at_nodes(outer, constant(outer, Vec3(0.01, 0, 0))));
+  const std::set<Index> inside(mesh.blocks[2].nodes.begin(), mesh.blocks[2].nodes.end());
+  for (Index node = 0; node < mesh.n_nodes(); ++node)
+    EXPECT_EQ(moved[node] == mesh.nodes[node], inside.contains(node));
 }
 
 TEST(MoveVolume, NonsenseIsRefused) {
   const Mesh mesh = test::ball_in_box(4);
   const Surface surface = ball(mesh);
-  const VolumeMover mover(mesh, surface);
+  const VolumeMover mover(mesh, test::only(surface));
   EXPECT_THROW(mover.move({}), InputError);
+  EXPECT_THROW(VolumeMover(mesh, {}), InputError);
+  EXPECT_THROW(VolumeMover(test::plate(1), test::only(surface)), InputError);
   std::vector<Vec3> displacements = constant(surface, Vec3::Zero());
   displacements[3].x() = std::nan("");
-  EXPECT_THROW(mover.move(displacements), InputError);
+  EXPECT_THROW(mover.move(test::at_nodes(surface, displacements)), InputError);
   // The square of the load overflows, and no residual is small beside infinity.
-  EXPECT_THROW(mover.move(constant(surface, Vec3::Constant(1e200))), NumericalError);
+  EXPECT_THROW(mover.move(test::at_nodes(surface, constant(surface, Vec3::Constant(1e200)))),
+               NumericalError);
 }

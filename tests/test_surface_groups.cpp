@@ -103,21 +103,22 @@ TEST(SurfaceGroups, ALongListIsCutShort) {
   }
 }
 
-TEST(SurfaceGroups, WhatIsNotASurfaceOfFirstOrderIsRefused) {
+TEST(SurfaceGroups, WhatIsNotASurfaceOfFirstOrSecondOrderIsRefused) {
   EXPECT_THROW(select_surface(Mesh{}), InputError);
-  Mesh lines = test::plate(1);
-  lines.blocks = {test::make_block({ElementShape::line, 1, 2}, 1, {}, {0, 1, 1, 2}, 1)};
-  EXPECT_THROW(select_surface(lines), InputError);
+  Mesh points = test::plate(1);
+  points.blocks = {test::make_block({ElementShape::point, 1, 1}, 1, {}, {0, 1}, 1)};
+  EXPECT_THROW(select_surface(points), InputError);
   Mesh curved = test::plate(1);
-  curved.nodes.resize(6, Vec3::Zero());
-  curved.blocks = {
-      test::make_block({ElementShape::triangle, 2, 6}, 1, {1}, {0, 1, 2, 3, 4, 5}, 17)};
+  curved.nodes.resize(10, Vec3::Zero());
+  curved.blocks = {test::make_block({ElementShape::triangle, 3, 10}, 1, {1},
+                                    {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, 17)};
   test::number_nodes(curved);
   try {
     select_surface(curved);
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("element 17"), std::string::npos);
-    EXPECT_NE(std::string(error.what()).find("-order 1"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("element 17 is a triangle of order 3"),
+              std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("-order 1 or -order 2"), std::string::npos);
   }
 }
