@@ -158,27 +158,32 @@ std::string cad_script(std::string_view file, std::optional<double> unit,
   return script + "EndIf\n";
 }
 
+// Its variables have names that no script uses.
 constexpr std::string_view highest_dimension_script = R"(
-groups3() = Physical Volume {:}; groups2() = Physical Surface {:}; groups1() = Physical Curve {:};
-entities3() = Volume {:}; entities2() = Surface {:};
-If (#groups3() + #groups2() + #groups1() > 0)
-  has3 = #groups3(); has2 = #groups2();
-Else
-  has3 = #entities3(); has2 = #entities2();
+roughmesh_3() = Physical Volume {:};
+roughmesh_2() = Physical Surface {:};
+roughmesh_1() = Physical Curve {:};
+If (#roughmesh_3() + #roughmesh_2() + #roughmesh_1() == 0)
+  roughmesh_3() = Volume {:};
+  roughmesh_2() = Surface {:};
 EndIf
-If (has3 > 0)
+If (#roughmesh_3() > 0)
   Mesh 3;
-ElseIf (has2 > 0)
+ElseIf (#roughmesh_2() > 0)
   Mesh 2;
 Else
   Mesh 1;
 EndIf
 )";
 
+constexpr std::string_view empty_mark = "roughmesh: empty";
+
 std::string script_driver(bool keeps_mesh, const GeometryOptions& options) {
   std::string script = options.mesh_size > 0 ? size_script(options.mesh_size) : "";
   if (!keeps_mesh || options.mesh_size > 0) script += highest_dimension_script;
-  return script + std::string(write_mesh_script);
+  script += "roughmesh_1() = Curve {:};\nroughmesh_2() = Surface {:};\n";
+  script += "If (#roughmesh_1() + #roughmesh_2() > 0)\n" + std::string(write_mesh_script);
+  return script + fmt::format("Else\n  Printf(\"{}\");\nEndIf\n", empty_mark);
 }
 
 void write(const std::filesystem::path& path, std::string_view text) {
@@ -194,23 +199,30 @@ GmshOutcome run(const ScratchFolder& folder, std::vector<std::string> files,
   return detail::run_gmsh(folder, {options.gmsh, std::move(arguments), options.timeout});
 }
 
-Mesh read_result(const ScratchFolder& folder, const std::filesystem::path& path) {
-  try {
-    return read_mesh(folder / "mesh.msh");
-  } catch (const FormatError& error) {
-    throw NumericalError(fmt::format(
-        "{}: gmsh wrote a mesh that cannot be read ({}); try another "
-        "gmsh (--gmsh PATH)",
-        path.string(), std::string_view(error.what()).substr(folder.path().string().size() + 1)));
-  }
-}
-
-void require_elements(const Mesh& mesh, const std::filesystem::path& path) {
-  if (dimension(mesh) >= 1) return;
+[[noreturn]] void fail_empty(const std::filesystem::path& path) {
   throw InputError(
       fmt::format("{}: gmsh made no element of it; is there a curve, surface or volume "
                   "in it?",
                   path.string()));
+}
+
+Mesh read_result(const ScratchFolder& folder, const std::filesystem::path& path) {
+  if (!std::filesystem::exists(folder / "mesh.msh"))
+    throw NumericalError(
+        fmt::format("{}: gmsh ended well but wrote no mesh; try another gmsh "
+                    "(--gmsh PATH)",
+                    path.string()));
+  try {
+    Mesh mesh = read_mesh(folder / "mesh.msh");
+    if (dimension(mesh) < 1) fail_empty(path);
+    return mesh;
+  } catch (const FormatError& error) {
+    const std::string_view said = error.what();
+    throw NumericalError(
+        fmt::format("{}: gmsh wrote a mesh that cannot be read ({}); try another "
+                    "gmsh (--gmsh PATH)",
+                    path.string(), said.substr(folder.path().string().size() + 1)));
+  }
 }
 
 // ---- CAD files
@@ -293,9 +305,7 @@ Mesh mesh_cad(const FileBytes& file, Geometry kind, const GeometryOptions& optio
   write(folder / "driver.geo", cad_script(name, unit, options));
   const GmshOutcome outcome = run(folder, {"driver.geo"}, options);
   check_cad_outcome(outcome, file.path, options);
-  Mesh mesh = read_result(folder, file.path);
-  require_elements(mesh, file.path);
-  return mesh;
+  return read_result(folder, file.path);
 }
 
 // ---- Scripts
@@ -331,6 +341,7 @@ void check_script_outcome(const GmshOutcome& outcome, const std::filesystem::pat
         fmt::format("{}: gmsh could not mesh it: {}; try another --mesh-size or "
                     "correct the script",
                     path.string(), error));
+  if (outcome.output.find(empty_mark) != std::string::npos) fail_empty(path);
   if (!has_mesh)
     throw InputError(
         fmt::format("{}: the script ended before its mesh was written; take Exit or "
@@ -349,9 +360,7 @@ Mesh mesh_script_file(const FileBytes& file, const GeometryOptions& options) {
   write(folder / "driver.geo", script_driver(detail::makes_mesh(file.view()), options));
   const GmshOutcome outcome = run(folder, {input, "driver.geo"}, options);
   check_script_outcome(outcome, file.path, std::filesystem::exists(folder / "mesh.msh"));
-  Mesh mesh = read_result(folder, file.path);
-  require_elements(mesh, file.path);
-  return mesh;
+  return read_result(folder, file.path);
 }
 
 void check_script_options(const std::filesystem::path& path, const GeometryOptions& options) {

@@ -169,6 +169,7 @@ const Words& meshing_words() {
                               "AlternateRight",
                               "Background",
                               "Betti",
+                              "BoundaryLayer",
                               "ClassifySurfaces",
                               "Cohomology",
                               "Combine",
@@ -423,7 +424,9 @@ bool is_safe_field(std::string_view type) {
   return types.contains(type);
 }
 
+// All options of the Mesh category are numbers.
 bool is_safe_option(std::string_view category, std::string_view name) {
+  if (category == "Mesh") return true;
   if (names_file_or_program(name) || category == "Solver" || category == "Print") return false;
   return category != "General" || is_safe_general_option(name);
 }
