@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// CAD files and geometry scripts become meshes, through the gmsh program (docs/files.md).
+// CAD files and geometry scripts become meshes, through the gmsh program (docs/geometry.md).
 #pragma once
 
 #include <cstdint>
