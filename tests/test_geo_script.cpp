@@ -101,10 +101,11 @@ TEST(GeoScript, HiddenTextThatComesToLifeIsRefused) {
   EXPECT_TRUE(is_refused("For i In {0:1} /*\nSystemCall \"id\";\n*/\nEndFor\n"));
   EXPECT_TRUE(is_refused("If(0)\nE\" EndIf SystemCall 'id'; \"\nEndIf\n"));
   EXPECT_TRUE(is_refused("If(0) E//  EndIf SystemCall \"id\";\nEndIf\n"));
+  EXPECT_TRUE(is_refused("If(0)\nx = E//  EndIf SystemCall \"id\";\n;\nEndIf\n"));
   EXPECT_TRUE(is_refused("S2N[\"SystemCall\"] \"id\";\n"));
   EXPECT_TRUE(is_refused("StringToName[\"SystemCall\"] \"id\";\n"));
   EXPECT_TRUE(is_refused("x = \"" + std::string(1023, 'a') + "\";SystemCall \"id\";//\";\n"));
-  EXPECT_TRUE(is_refused("x = \"" + std::string(1030, 'a') + " ;SystemCall 'id';\n y = \"a\";\n"));
+  EXPECT_TRUE(is_refused("x = \"" + std::string(1022, 'a') + " ;SystemCall 'id'; y = 1;\";"));
 }
 
 TEST(GeoScript, HiddenTextInALineLongerThanGmshReadsAtOnceIsRefused) {
