@@ -51,6 +51,14 @@ std::string unit_script(std::optional<double> unit_in_mm) {
                      nearest->first, is_exact ? 1 : factor);
 }
 
+// Solids that touch or lie in each other are cut along each other, so that their meshes fit.
+constexpr std::string_view share_faces_script = R"(
+solids() = Volume {:};
+If (#solids() > 1)
+  BooleanFragments{ Volume {solids()}; Delete; }{ }
+EndIf
+)";
+
 // Labels become physical groups: gmsh gives them as "Shapes/" and the path of names.
 constexpr std::string_view group_script = R"(
 For dimension In {2:3}
@@ -143,6 +151,7 @@ std::string cad_script(std::string_view file, std::optional<double> unit_in_mm,
                        const GeometryOptions& options) {
   std::string script = "SetFactory(\"OpenCASCADE\");\n" + unit_script(unit_in_mm);
   script += fmt::format("Geometry.OCCImportLabels = 1;\nMerge \"{}\";\n", file);
+  if (options.share_faces) script += share_faces_script;
   script += group_script;
   script += fmt::format("size = {:.17g};\nmost = {:.17g};\n", options.mesh_size, options.max_nodes);
   script += size_script(options.mesh_size) + "Mesh.SaveAll = 1;\nMesh.Algorithm3D = 10;\n";

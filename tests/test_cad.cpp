@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A geometry becomes a mesh with the coordinates of its file, or one clear line says why not.
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -191,6 +192,26 @@ TEST_F(Cad, LabelsOfPartsBecomePhysicalGroups) {
   EXPECT_TRUE(group_names(mesh).contains("3 set/1/first"));
   EXPECT_EQ(mesh.groups.size(), 3U);
   EXPECT_NEAR(volume_of(mesh), 3, 1e-11);
+}
+
+TEST_F(Cad, SolidsThatTouchOrOverlapShareTheirFaces) {
+  // Two boxes with a common face, and a third with a smaller one inside.
+  script(
+      "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 1, 1, 1};\nBox(2) = {1, 0, 0, 1, 1, 1};\n"
+      "Box(3) = {3, 0, 0, 1, 1, 1};\nBox(4) = {3.25, 0.25, 0.25, 0.5, 0.5, 0.5};\n");
+  written_by_gmsh("script.geo", "parts.step");
+  const auto n_places = [](const Mesh& mesh) {
+    std::set<std::array<double, 3>> places;
+    for (const Vec3& node : mesh.nodes) places.insert({node.x(), node.y(), node.z()});
+    return static_cast<Index>(places.size());
+  };
+  const Mesh shared = mesh_geometry(folder_ / "parts.step", {.mesh_size = 0.3});
+  EXPECT_EQ(n_places(shared), shared.n_nodes());
+  EXPECT_NEAR(volume_of(shared), 3, 1e-11);
+  EXPECT_EQ(shared.groups.size(), 4U);
+  const Mesh apart =
+      mesh_geometry(folder_ / "parts.step", {.mesh_size = 0.3, .share_faces = false});
+  EXPECT_NEAR(volume_of(apart), 3 + 0.125, 1e-11);  // the inner box is meshed twice
 }
 
 TEST_F(Cad, NeitherNameNorFolderOfTheInputIsSeenByGmsh) {
