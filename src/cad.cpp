@@ -3,8 +3,6 @@
 // do by a script that holds nothing of the input but numbers.
 #include "roughmesh/cad.hpp"
 
-#include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -13,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "cad_scripts.hpp"
 #include "file_formats.hpp"
 #include "geo_script.hpp"
 #include "gmsh_process.hpp"
@@ -38,149 +37,6 @@ Geometry geometry_of(const std::filesystem::path& path) {
   return extension == ".geo" ? Geometry::script : Geometry::none;
 }
 
-// What gmsh is asked to write, whatever a script or an option file says: MSH 4.1, binary, one file.
-constexpr std::string_view write_mesh_script = R"(
-Mesh.Format = 1;
-Mesh.MshFileVersion = 4.1;
-Mesh.Binary = 1;
-Mesh.SaveParametric = 0;
-Mesh.PartitionSplitMeshFiles = 0;
-Save "mesh.msh";
-)";
-
-std::string size_script(double mesh_size) {
-  return fmt::format(
-      "Mesh.MeshSizeMin = {0:.17g};\nMesh.MeshSizeMax = {0:.17g};\nMesh.MeshSizeFactor = 1;\n"
-      "Mesh.MeshSizeFromCurvature = 0;\nMesh.MeshSizeExtendFromBoundary = 1;\n",
-      mesh_size);
-}
-
-// OpenCASCADE converts lengths on reading to a unit that it has a name for, and what remains is a
-// factor.
-std::string unit_script(std::optional<double> unit_in_mm) {
-  constexpr std::array<std::pair<std::string_view, double>, 9> named = {{{"UM", 1e-3},
-                                                                         {"MM", 1},
-                                                                         {"CM", 10},
-                                                                         {"M", 1e3},
-                                                                         {"KM", 1e6},
-                                                                         {"MIL", 0.0254},
-                                                                         {"INCH", 25.4},
-                                                                         {"FT", 304.8},
-                                                                         {"MI", 1609344}}};
-  const double unit = unit_in_mm.value_or(1);
-  const auto is_nearer = [unit](const auto& a, const auto& b) {
-    return std::abs(std::log(a.second / unit)) < std::abs(std::log(b.second / unit));
-  };
-  const auto* const nearest = std::min_element(named.begin(), named.end(), is_nearer);
-  const double factor = nearest->second / unit;
-  const bool is_exact = std::abs(factor - 1) < 1e-9;
-  return fmt::format("Geometry.OCCTargetUnit = \"{}\";\nGeometry.OCCScaling = {:.17g};\n",
-                     nearest->first, is_exact ? 1 : factor);
-}
-
-// Labels become physical groups: gmsh gives them as "Shapes/" and the path of names.
-constexpr std::string_view group_script = R"(
-For dimension In {2:3}
-  tags() = {};
-  If (dimension == 3)
-    tags() = Volume {:};
-  Else
-    tags() = Surface {:};
-  EndIf
-  labelled() = {};
-  labels() = Str("");
-  For i In {0:#tags()-1}
-    If (dimension == 3)
-      label = Str(Volume {tags(i)});
-    Else
-      label = Str(Surface {tags(i)});
-    EndIf
-    If (StrLen(label) > 7)
-      labelled() += tags(i);
-      labels() += Str(StrSub(label, 7, 10000));
-    EndIf
-  EndFor
-  is_done() = {};
-  For i In {0:#labelled()-1}
-    is_done(i) = 0;
-  EndFor
-  For i In {0:#labelled()-1}
-    If (!is_done(i))
-      group() = {};
-      For j In {i:#labelled()-1}
-        If (StrCmp(labels(j+1), labels(i+1)) == 0)
-          is_done(j) = 1;
-          group() += labelled(j);
-        EndIf
-      EndFor
-      If (dimension == 3)
-        Physical Volume(Str(labels(i+1))) = group();
-      Else
-        Physical Surface(Str(labels(i+1))) = group();
-      EndIf
-    EndIf
-  EndFor
-EndFor
-)";
-
-// Counts solids and surfaces, predicts the number of nodes, and meshes where that is bearable.
-// Elements of edge h fill space at about sqrt(2)/h^3 nodes, a surface at 2/sqrt(3)/h^2.
-constexpr std::string_view mesh_script = R"(
-solids() = Volume {:};
-surfaces() = Surface {:};
-volume = 0;
-area = 0;
-For i In {0:#solids()-1}
-  volume += Abs(Mass Volume {solids(i)});
-EndFor
-For i In {0:#surfaces()-1}
-  area += Abs(Mass Surface {surfaces(i)});
-EndFor
-predicted = 1.41 * volume / size^3 + 1.15 * area / size^2;
-Printf("roughmesh: %g %g %.6g", #solids(), #surfaces(), predicted);
-If (#surfaces() > 0 && predicted <= most)
-  If (#solids() > 0)
-    Mesh 3;
-  Else
-    Mesh 2;
-  EndIf
-)";
-
-std::string cad_script(std::string_view file, std::optional<double> unit,
-                       const GeometryOptions& options) {
-  std::string script = "SetFactory(\"OpenCASCADE\");\n" + unit_script(unit);
-  script += fmt::format("Geometry.OCCImportLabels = 1;\nMerge \"{}\";\n", file);
-  script += group_script;
-  script += fmt::format("size = {:.17g};\nmost = {:.17g};\n", options.mesh_size, options.max_nodes);
-  script += size_script(options.mesh_size) + "Mesh.SaveAll = 1;\nMesh.Algorithm3D = 10;\n";
-  script += mesh_script;
-  script += write_mesh_script;
-  return script + "EndIf\n";
-}
-
-constexpr std::string_view highest_dimension_script = R"(
-groups3() = Physical Volume {:}; groups2() = Physical Surface {:}; groups1() = Physical Curve {:};
-entities3() = Volume {:}; entities2() = Surface {:};
-If (#groups3() + #groups2() + #groups1() > 0)
-  has3 = #groups3(); has2 = #groups2();
-Else
-  has3 = #entities3(); has2 = #entities2();
-EndIf
-If (has3 > 0)
-  Mesh 3;
-ElseIf (has2 > 0)
-  Mesh 2;
-Else
-  Mesh 1;
-EndIf
-)";
-
-std::string script_driver(bool keeps_mesh, const GeometryOptions& options) {
-  std::string script = options.mesh_size > 0 ? size_script(options.mesh_size) : "";
-  if (!keeps_mesh || options.mesh_size > 0) script += highest_dimension_script;
-  return script + std::string(write_mesh_script);
-}
-
 void write(const std::filesystem::path& path, std::string_view text) {
   detail::OutputFile file(path);
   file.write(text);
@@ -194,23 +50,30 @@ GmshOutcome run(const ScratchFolder& folder, std::vector<std::string> files,
   return detail::run_gmsh(folder, {options.gmsh, std::move(arguments), options.timeout});
 }
 
-Mesh read_result(const ScratchFolder& folder, const std::filesystem::path& path) {
-  try {
-    return read_mesh(folder / "mesh.msh");
-  } catch (const FormatError& error) {
-    throw NumericalError(fmt::format(
-        "{}: gmsh wrote a mesh that cannot be read ({}); try another "
-        "gmsh (--gmsh PATH)",
-        path.string(), std::string_view(error.what()).substr(folder.path().string().size() + 1)));
-  }
-}
-
-void require_elements(const Mesh& mesh, const std::filesystem::path& path) {
-  if (dimension(mesh) >= 1) return;
+[[noreturn]] void fail_empty(const std::filesystem::path& path) {
   throw InputError(
       fmt::format("{}: gmsh made no element of it; is there a curve, surface or volume "
                   "in it?",
                   path.string()));
+}
+
+Mesh read_result(const ScratchFolder& folder, const std::filesystem::path& path) {
+  if (!std::filesystem::exists(folder / "mesh.msh"))
+    throw NumericalError(
+        fmt::format("{}: gmsh ended well but wrote no mesh; try another gmsh "
+                    "(--gmsh PATH)",
+                    path.string()));
+  try {
+    Mesh mesh = read_mesh(folder / "mesh.msh");
+    if (dimension(mesh) < 1) fail_empty(path);
+    return mesh;
+  } catch (const FormatError& error) {
+    const std::string_view said = error.what();
+    throw NumericalError(
+        fmt::format("{}: gmsh wrote a mesh that cannot be read ({}); try another "
+                    "gmsh (--gmsh PATH)",
+                    path.string(), said.substr(folder.path().string().size() + 1)));
+  }
 }
 
 // ---- CAD files
@@ -290,12 +153,10 @@ Mesh mesh_cad(const FileBytes& file, Geometry kind, const GeometryOptions& optio
   const ScratchFolder folder;
   write(folder / name, file.view());
   const auto unit = is_step ? detail::step_length_unit(file.view()) : std::optional<double>();
-  write(folder / "driver.geo", cad_script(name, unit, options));
+  write(folder / "driver.geo", detail::cad_script(name, unit, options));
   const GmshOutcome outcome = run(folder, {"driver.geo"}, options);
   check_cad_outcome(outcome, file.path, options);
-  Mesh mesh = read_result(folder, file.path);
-  require_elements(mesh, file.path);
-  return mesh;
+  return read_result(folder, file.path);
 }
 
 // ---- Scripts
@@ -331,6 +192,7 @@ void check_script_outcome(const GmshOutcome& outcome, const std::filesystem::pat
         fmt::format("{}: gmsh could not mesh it: {}; try another --mesh-size or "
                     "correct the script",
                     path.string(), error));
+  if (outcome.output.find(detail::empty_mark) != std::string::npos) fail_empty(path);
   if (!has_mesh)
     throw InputError(
         fmt::format("{}: the script ended before its mesh was written; take Exit or "
@@ -346,12 +208,10 @@ Mesh mesh_script_file(const FileBytes& file, const GeometryOptions& options) {
     input = std::filesystem::absolute(file.path).string();
   else
     write(folder / input, file.view());
-  write(folder / "driver.geo", script_driver(detail::makes_mesh(file.view()), options));
+  write(folder / "driver.geo", detail::script_driver(detail::makes_mesh(file.view()), options));
   const GmshOutcome outcome = run(folder, {input, "driver.geo"}, options);
   check_script_outcome(outcome, file.path, std::filesystem::exists(folder / "mesh.msh"));
-  Mesh mesh = read_result(folder, file.path);
-  require_elements(mesh, file.path);
-  return mesh;
+  return read_result(folder, file.path);
 }
 
 void check_script_options(const std::filesystem::path& path, const GeometryOptions& options) {

@@ -34,6 +34,8 @@ constexpr std::size_t most_output = std::size_t{1} << 20;
 std::vector<std::string> environment(const std::filesystem::path& home) {
   std::vector<std::string> variables = {"HOME=" + home.string(), "GMSH_HOME=" + home.string(),
                                         "TMPDIR=" + home.string(), "LC_ALL=C"};
+  constexpr std::size_t most = 12;
+  variables.reserve(most);
   for (const char* const name : {"PATH", "LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "PYTHONPATH",
                                  "PYTHONHOME", "VIRTUAL_ENV", "PYTHONUSERBASE"})
     if (const char* const value = std::getenv(name))
@@ -47,6 +49,7 @@ std::vector<std::string> environment(const std::filesystem::path& home) {
 
 std::vector<char*> pointers(std::vector<std::string>& strings) {
   std::vector<char*> result;
+  result.reserve(strings.size() + 1);
   for (std::string& string : strings) result.push_back(string.data());
   result.push_back(nullptr);
   return result;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Runs the gmsh program as a child process. Linked into this one, it could end it, run commands
-// from a file, and would bring its licence (docs/files.md).
+// from a file, and would bring its licence (docs/geometry.md).
 #pragma once
 
 #include <string>

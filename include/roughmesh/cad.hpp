@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// CAD files and geometry scripts become meshes, through the gmsh program (docs/files.md).
+// CAD files and geometry scripts become meshes, through the gmsh program (docs/geometry.md).
 #pragma once
 
 #include <cstdint>
@@ -22,6 +22,7 @@ struct GeometryOptions {
   std::string gmsh = "gmsh";   ///< the program: a name looked for in PATH, or a path
   double timeout = 600;        ///< seconds it may take, > 0
   bool trust_scripts = false;  ///< run .geo scripts that run programs or touch other files
+  bool share_faces = true;  ///< of a CAD file: solids that touch get one mesh of their common face
   double max_nodes =
       20'000'000;  ///< of a CAD file: predicted from its volume and area before meshing
 };
