@@ -54,8 +54,8 @@ struct FileFormat {
   std::vector<Encoding> encodings = {Encoding::text};  ///< of new files, the usual one first
 };
 
-extern const FileFormat msh4_format, msh2_format, stl_format, ply2_format, abaqus_format, nastran_format,
-    unv_format, vtu_format;
+extern const FileFormat msh4_format, msh2_format, stl_format, ply2_format, abaqus_format,
+    nastran_format, unv_format, vtu_format;
 
 /// Every format, in the order in which they are asked whether they recognize a file.
 std::span<const FileFormat* const> file_formats();

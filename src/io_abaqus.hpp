@@ -33,8 +33,8 @@ std::vector<std::string_view> comma_fields(std::string_view line);
 
 enum class AbaqusRole : std::uint8_t {
   solid,
-  plane,   ///< faces of it are its edges
-  sheet,   ///< shells, membranes, rigid facets: a face of it is itself
+  plane,  ///< faces of it are its edges
+  sheet,  ///< shells, membranes, rigid facets: a face of it is itself
   line,
   ignored  ///< springs, masses, connectors, cohesive layers: kept in the file only
 };

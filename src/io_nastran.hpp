@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Parts of the Nastran bulk data reader and writer. Format: MSC Nastran Quick Reference Guide, "Bulk
-// Data Entries" (also Simcenter Nastran and OptiStruct, which read the same).
+// Parts of the Nastran bulk data reader and writer. Format: MSC Nastran Quick Reference Guide,
+// "Bulk Data Entries" (also Simcenter Nastran and OptiStruct, which read the same).
 #pragma once
 
 #include <deque>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Parts of the UNV reader and writer. Format: I-deas universal files, "Universal Dataset Number" 781,
-// 780, 2411, 2412, 2477 (https://www.ceas3.uc.edu/sdrluff/).
+// Parts of the UNV reader and writer. Format: I-deas universal files, "Universal Dataset Number"
+// 781, 780, 2411, 2412, 2477 (https://www.ceas3.uc.edu/sdrluff/).
 #pragma once
 
 #include <optional>
