@@ -64,14 +64,26 @@ Enum parse_choice(std::string_view text, const std::string& flag) {
   throw InputError(fmt::format("{}: {}; must be one of {}", flag, text, listed_choices<Enum>()));
 }
 
+/// The value of an optional member, void of any other.
+template <class Member>
+struct ValueOf {
+  using type = void;
+};
+template <class Value>
+struct ValueOf<std::optional<Value>> {
+  using type = Value;
+};
+template <class Member>
+constexpr bool is_optional = !std::is_void_v<typename ValueOf<Member>::type>;
+
 template <class Member>
 void parse_into(Member& member, const std::string& text, const std::string& flag) {
-  if constexpr (std::is_enum_v<Member>)
+  if constexpr (is_optional<Member>)
+    parse_into(member.emplace(), text, flag);
+  else if constexpr (std::is_enum_v<Member>)
     member = parse_choice<Member>(text, flag);
   else if constexpr (std::is_same_v<Member, std::vector<double>>)
     member = parse_list(text, flag);
-  else if constexpr (std::is_same_v<Member, std::optional<double>>)
-    member = parse_number<double>(text, flag);
   else if constexpr (std::is_arithmetic_v<Member>)
     member = parse_number<Member>(text, flag);
   else
@@ -81,7 +93,9 @@ void parse_into(Member& member, const std::string& text, const std::string& flag
 /// The help of an option, with its choices and default.
 template <class Member>
 std::string described(const OptionText& text, const Member& member) {
-  if constexpr (std::is_enum_v<Member>)
+  if constexpr (is_optional<Member> && std::is_enum_v<typename ValueOf<Member>::type>)
+    return fmt::format("{}: {}", text.help, listed_choices<typename ValueOf<Member>::type>());
+  else if constexpr (std::is_enum_v<Member>)
     return fmt::format("{}: {}; default {}", text.help, listed_choices<Member>(), name(member));
   else if constexpr (std::is_arithmetic_v<Member>)
     return text.name == "rms" ? std::string(text.help)
@@ -108,15 +122,36 @@ std::string refuse_option_as_value(const std::string& given) {
   return given.starts_with("--") ? "needs a value, not " + given : "";
 }
 
-void add_options(CLI::App& app, RoughenOptions& options,
-                 const std::vector<std::string_view>& only = {}) {
-  for_each_option(options, [&](const OptionText& text, auto& member) {
-    if (!only.empty() && std::find(only.begin(), only.end(), text.name) == only.end()) return;
-    CLI::Option* option = add_option(app, text, member);
+/// Adds options to a verb; `only` names the ones that it takes, all if empty.
+class OptionAdder {
+ public:
+  OptionAdder(CLI::App& app, std::vector<std::string_view> only)
+      : app_(&app), only_(std::move(only)) {}
+
+  template <class Member>
+  void operator()(const OptionText& text, Member& member) {
+    if (!only_.empty() && std::find(only_.begin(), only_.end(), text.name) == only_.end()) return;
+    CLI::Option* option = add_option(*app_, text, member);
     if (text.name != "input") option->type_name(std::string(text.value));
-    if (!std::is_same_v<std::decay_t<decltype(member)>, bool>)
-      option->check(refuse_option_as_value);
-  });
+    if (!std::is_same_v<Member, bool>) option->check(refuse_option_as_value);
+    added.push_back(option);
+  }
+
+  std::vector<CLI::Option*> added;
+
+ private:
+  CLI::App* app_;
+  std::vector<std::string_view> only_;
+};
+
+/// @return  those that describe a surface
+std::vector<CLI::Option*> add_options(CLI::App& app, RoughenOptions& options,
+                                      const std::vector<std::string_view>& only = {}) {
+  OptionAdder of_run(app, only), of_surface(app, only);
+  for_each_run_option(options, of_run);
+  for_each_surface_option(options.surfaces.front(), of_surface);
+  for (CLI::Option* option : of_surface.added) option->group("Surface");
+  return of_surface.added;
 }
 
 /// The parser for one pass over the arguments; writes into `command`.
@@ -129,7 +164,7 @@ struct Parser {
     app.add_flag("--version", show_version, "print the version");
 
     roughen = app.add_subcommand("roughen", "make rough meshes from a smooth one");
-    add_options(*roughen, command.options);
+    of_surface = add_options(*roughen, command.options);
     roughen
         ->add_option(
             "--job", job,
@@ -142,7 +177,8 @@ struct Parser {
         app.add_subcommand("info", "list groups and sizes, and what roughness the mesh can carry");
     add_options(*info, command.options,
                 {"input", "group", "rms", "length", "acf", "length_definition", "nu", "hurst",
-                 "rolloff", "power", "alpha", "angle", "distance", "edge_angle", "flip", "unit"});
+                 "rolloff", "power", "alpha", "table", "angle", "distance", "period", "edge_angle",
+                 "flip", "unit", "mesh_size", "gmsh", "timeout", "trust_scripts"});
     info->footer(exit_codes);
   }
 
@@ -150,6 +186,7 @@ struct Parser {
       "Makes finite element meshes rough, with statistics that are asked for and certified."};
   CLI::App* roughen = nullptr;
   CLI::App* info = nullptr;
+  std::vector<CLI::Option*> of_surface;  ///< options of roughen that describe a surface
   std::string job;
   bool show_version = false;
 };
@@ -187,6 +224,15 @@ void parse(Parser& parser, std::vector<std::string> arguments) {
   }
 }
 
+/// Which of several surfaces would such an option mean?
+void refuse_surface_options(const Parser& parser, const RoughenOptions& job) {
+  if (job.surfaces.size() < 2) return;
+  for (const CLI::Option* option : parser.of_surface)
+    if (option->count() > 0)
+      throw InputError(fmt::format("{}: the job has {} surfaces; set it in their tables",
+                                   option->get_name(), job.surfaces.size()));
+}
+
 }  // namespace
 
 Command parse_command_line(const std::vector<std::string>& arguments) {
@@ -207,6 +253,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
     if (!first.job.empty()) {
       // A second pass over the same arguments, on top of what the job says.
       command.options = read_job(first.job);
+      refuse_surface_options(first, command.options);
       Parser second(command);
       parse(second, arguments);
     }

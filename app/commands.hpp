@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "roughmesh/options.hpp"
 
@@ -10,6 +11,12 @@ namespace roughmesh::app {
 
 /// Text for a terminal: one line, with `?` for control characters, which names of files may hold.
 std::string printable(std::string text);
+
+/// "a, b, c"
+std::string list_of(const std::vector<std::string>& names);
+
+/// The mesh that `input` names; a geometry is meshed first.
+Mesh read_input(const RoughenOptions& options);
 
 /// Reads the input, writes each realization and the report, prints a summary.
 void run_roughen(const RoughenOptions& options);

@@ -35,13 +35,19 @@ std::int64_t n_elements_in(const Mesh& mesh, const PhysicalGroup& group) {
   return count;
 }
 
-/// Area and edge lengths of a surface group, or why it has none.
+const char* measure_of(const Surface& surface) { return surface.dimension == 1 ? "length" : "area"; }
+
+/// Area (of lines: length) and edge lengths of a group, or why it has none.
 std::string surface_size(const Mesh& mesh, const PhysicalGroup& group) {
-  if (group.dimension != 2) return "";
+  if (group.dimension != 1 && group.dimension != 2) return "";
+  if (group.dimension == 1 && dimension(mesh) > 2) return "";
+  const std::string choice = group.name.empty() ? std::to_string(group.tag) : group.name;
   try {
-    const Surface surface = select_surface(mesh, {.groups = {std::to_string(group.tag)}});
-    return fmt::format("  area {:.6g}  h {:.4g} ({:.4g} to {:.4g})", surface.area,
-                       surface.mesh_size.median, surface.mesh_size.min, surface.mesh_size.max);
+    const Surface surface = select_surface(mesh, {.groups = {choice}});
+    if (surface.dimension != group.dimension) return "";  // another group of that number is meant
+    return fmt::format("  {} {:.6g}  h {:.4g} ({:.4g} to {:.4g})", measure_of(surface),
+                       surface.area, surface.mesh_size.median, surface.mesh_size.min,
+                       surface.mesh_size.max);
   } catch (const InputError& error) {
     return fmt::format("  {}", error.what());
   }
@@ -56,29 +62,30 @@ void print_groups(const Mesh& mesh) {
                surface_size(mesh, group));
 }
 
-std::string list_of(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& each : names) text += (text.empty() ? "" : ", ") + each;
-  return text;
-}
-
 void print_surface(const Surface& surface, const std::string& unit) {
   const MeshSize& h = surface.mesh_size;
-  fmt::print("\nsurface {}\n", list_of(surface.groups));
-  fmt::print("  {:<34} {} points, {} faces, {} piece{}, {}\n", "size", surface.n_points(),
-             surface.n_faces(), surface.n_components, surface.n_components == 1 ? "" : "s",
-             surface.n_border_edges == 0
-                 ? "closed"
-                 : fmt::format("open ({} border edges)", surface.n_border_edges));
-  fmt::print("  {:<34} {:.6g} {}^2\n", "area", surface.area, unit);
-  fmt::print("  {:<34} {:.4g} {} (from {:.4g} to {:.4g})\n", "mesh size h (median edge)", h.median,
-             unit, h.min, h.max);
+  const bool is_curve = surface.dimension == 1;
+  fmt::print("\n{} {}\n", is_curve ? "curve" : "surface", list_of(surface.groups));
+  fmt::print("  {:<34} {} points, {} {}, {} piece{}, {}\n", "size", surface.n_points(),
+             surface.n_elements, is_curve ? "lines" : "faces", surface.n_components,
+             surface.n_components == 1 ? "" : "s",
+             surface.n_border_edges == 0 ? "closed"
+                                         : fmt::format("open ({} {})", surface.n_border_edges,
+                                                       is_curve ? "end points" : "border edges"));
+  fmt::print("  {:<34} {:.6g} {}{}\n", measure_of(surface), surface.area, unit,
+             is_curve ? "" : "^2");
+  fmt::print("  {:<34} {:.4g} {} (from {:.4g} to {:.4g})\n",
+             is_curve ? "mesh size h (median line)" : "mesh size h (median edge)", h.median, unit,
+             h.min, h.max);
   fmt::print("  {:<34} {:.4g} {}\n", "shortest correlation length 2.5 h",
              sizes_per_length * h.median, unit);
   if (surface.n_sharp_edges > 0)
-    fmt::print("  {:<34} {} (normals are averaged there)\n", "sharp edges", surface.n_sharp_edges);
+    fmt::print("  {:<34} {} (normals are averaged there)\n",
+               is_curve ? "sharp corners" : "sharp edges", surface.n_sharp_edges);
   if (surface.n_nonmanifold_edges > 0)
-    fmt::print("  {:<34} {}\n", "edges of three or more faces", surface.n_nonmanifold_edges);
+    fmt::print("  {:<34} {}\n",
+               is_curve ? "points of three or more lines" : "edges of three or more faces",
+               surface.n_nonmanifold_edges);
 }
 
 std::string optional_length(const std::optional<double>& value) {
@@ -88,7 +95,7 @@ std::string optional_length(const std::optional<double>& value) {
 void print_lengths(const Autocorrelation& autocorrelation, const std::string& unit) {
   const EquivalentLengths lengths = autocorrelation.equivalent_lengths();
   fmt::print("\ncorrelation length of {}, in {}\n", name(autocorrelation.family()), unit);
-  fmt::print("  {:<34} {:.6g}\n", "formula", lengths.formula);
+  fmt::print("  {:<34} {}\n", "formula", optional_length(lengths.formula));
   fmt::print("  {:<34} {:.6g}\n", "1/e distance", lengths.one_over_e);
   fmt::print("  {:<34} {}\n", "integral scale", optional_length(lengths.integral));
   fmt::print("  {:<34} {:.6g}\n", "Sal (decay to 0.2)", lengths.sal);
@@ -116,8 +123,8 @@ void print_limits(const Resolution& r, const std::string& unit) {
 }
 
 /// Without a length asked for, the shortest the mesh carries.
-RoughenOptions with_length(RoughenOptions options, const Surface& surface) {
-  const bool has_length = !options.length.empty() || options.rolloff;
+Roughness with_length(Roughness options, const Surface& surface) {
+  const bool has_length = !options.length.empty() || options.rolloff || options.acf == Family::table;
   if (!has_length) options.length = {sizes_per_length * surface.mesh_size.median};
   return options;
 }
@@ -127,27 +134,28 @@ RoughenOptions with_length(RoughenOptions options, const Surface& surface) {
 void run_info(const RoughenOptions& options, bool has_rms) {
   if (options.input.empty()) throw InputError("INPUT: missing; give a mesh: roughmesh info MESH");
   const std::string unit = options.unit.empty() ? "mesh units" : options.unit;
-  if (has_rms && !(std::isfinite(options.rms) && options.rms > 0))
-    throw InputError(fmt::format("--rms: {:g}; must be a positive number", options.rms));
-  const Mesh mesh = read_mesh(options.input);
+  const Roughness& request = options.surfaces.front();
+  if (has_rms && !(std::isfinite(request.rms) && request.rms > 0))
+    throw InputError(fmt::format("--rms: {:g}; must be a positive number", request.rms));
+  const Mesh mesh = read_input(options);
   print_mesh(mesh, options.input);
   print_groups(mesh);
 
   Surface surface;
   try {
-    surface = select_surface(mesh, surface_options(options));
+    surface = select_surface(mesh, surface_options(request));
   } catch (const InputError& error) {
-    if (!options.group.empty()) throw;
+    if (!request.group.empty()) throw;
     fmt::print("\n{}\n", error.what());
     return;
   }
   print_surface(surface, unit);
-  const FieldModel model = field_model(with_length(options, surface), surface.points);
-  const Resolution resolution = assess_resolution(surface, model.autocorrelation, model.distance);
-  print_lengths(model.autocorrelation, unit);
-  print_resolution(resolution, has_rms, options.rms, unit);
+  const Correlation correlation = field_model(with_length(request, surface), surface);
+  const Resolution resolution = assess_resolution(surface, correlation);
+  print_lengths(correlation.autocorrelation(), unit);
+  print_resolution(resolution, has_rms, request.rms, unit);
   print_limits(resolution, unit);
-  const double rq = has_rms ? options.rms : 0.0;
+  const double rq = has_rms ? request.rms : 0.0;
   for (const std::string& warning : resolution_warnings(resolution, rq))
     fmt::print("warning: {}\n", warning);
 }

@@ -67,16 +67,26 @@ void require_files(const RoughenOptions& options) {
         "OUTPUT: missing; give the file to write with -o, e.g. -o rough_{realization}.msh");
 }
 
+void print_statistics(const SurfaceStatistics& s) {
+  fmt::print("  Sq {:.4g} (expected {:.4g} +- {:.2g})", s.heights.sq, s.sq_expected,
+             s.sq_expected_std);
+  if (s.unfaded)
+    fmt::print(", where not faded {:.4g} (expected {:.4g} +- {:.2g})", s.unfaded->sq,
+               s.unfaded->expected, s.unfaded->expected_std);
+  fmt::print("  Ssk {:.2f}  Sku {:.2f}", s.heights.ssk, s.heights.sku);
+}
+
 void print_summary(const Report& report, const std::string& path_of_report) {
-  for (const RealizationReport& r : report.realizations)
-    fmt::print(
-        "{}  Sq {:.4g} (expected {:.4g} +- {:.2g})  Ssk {:.2f}  Sku {:.2f}  min quality {:.3g} "
-        "(before {:.3g})\n",
-        r.path, r.statistics.sq, r.sq_expected, r.sq_expected_std, r.statistics.ssk,
-        r.statistics.sku, r.min_quality, r.min_quality_before);
-  fmt::print("{}  {} nodes, {} of rank {}, covariance error {:.2g}, {:.2f} s\n", path_of_report,
-             report.surface_nodes, name(report.field.factorization), report.field.rank,
-             report.audit.covariance_error, report.timings.total);
+  for (const RealizationReport& r : report.realizations) {
+    fmt::print("{}", r.path);
+    for (const SurfaceStatistics& surface : r.surfaces) print_statistics(surface);
+    fmt::print("  min quality {:.3g} (before {:.3g})\n", r.min_quality, r.min_quality_before);
+  }
+  for (const SurfaceReport& surface : report.surfaces)
+    fmt::print("{}  {} nodes, {} of rank {}, covariance error {:.2g}\n", list_of(surface.groups),
+               surface.nodes, name(surface.field.factorization), surface.field.rank,
+               surface.audit.covariance_error);
+  fmt::print("{}  {:.2f} s\n", path_of_report, report.timings.total);
 }
 
 void print_warnings(const Report& report) {
@@ -127,14 +137,21 @@ class ReportFile {
   std::optional<Clock::time_point> written_;
 };
 
-bool is_vtu(const std::string& path) { return std::filesystem::path(path).extension() == ".vtu"; }
+/// Fields cost time to put together; most formats leave them out.
+WriteOptions with_fields(WriteOptions options, const RoughMesh& rough, const std::string& path) {
+  if (carries_fields(rough.mesh, path, options)) options.fields = point_fields(rough);
+  return options;
+}
 
-void make_realizations(const Mesh& mesh, const RoughenOptions& options, ReportFile& file) {
+void make_realizations(const Mesh& mesh, const RoughenOptions& options,
+                       const std::vector<std::string>& losses, ReportFile& file) {
   const ProgressBar progress(options);
   const auto deliver = [&](const RoughMesh& rough, Report& report) {
     const std::string path = output_path(options.output, rough.realization);
-    write_mesh(rough.mesh, path,
-               {.fields = is_vtu(path) ? point_fields(rough) : std::vector<PointField>()});
+    write_mesh(rough.mesh, path, with_fields(write_options(options), rough, path));
+    if (report.realizations.size() == 1 && !losses.empty())
+      report.warnings.push_back(fmt::format("OUTPUT does not hold all of INPUT; left out: {}",
+                                            list_of(losses)));
     report.realizations.back().path = path;
     file.update(report);
     progress.show(report.realizations.size());
@@ -156,16 +173,28 @@ std::string printable(std::string text) {
   return text;
 }
 
+std::string list_of(const std::vector<std::string>& names) {
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+Mesh read_input(const RoughenOptions& options) {
+  if (!is_geometry(options.input)) return read_mesh(options.input);
+  return mesh_geometry(options.input, geometry_options(options));
+}
+
 void run_roughen(const RoughenOptions& options) {
   const Clock::time_point start = Clock::now();
   require_files(options);
   check_options(options);
-  const Mesh mesh = read_mesh(options.input);
+  const Mesh mesh = read_input(options);
   // Before the hours that a large surface may take.
-  check_output(mesh, output_path(options.output, options.first));
+  const std::string first_path = output_path(options.output, options.first);
+  check_output(mesh, first_path, write_options(options));
+  const std::vector<std::string> losses =
+      conversion_losses(mesh, first_path, write_options(options));
   check_text_output(report_path(options));
   ReportFile file(report_path(options), start, seconds_since(start));
-  make_realizations(mesh, options, file);
+  make_realizations(mesh, options, losses, file);
   file.write();
   if (options.quiet) return;
   print_summary(file.latest(), file.path());

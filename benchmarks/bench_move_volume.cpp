@@ -63,7 +63,7 @@ detail::HarmonicExtension rebuild(const Mesh& mesh, const Surface& surface) {
     const bool on_box = x.minCoeff() == 0 || x.maxCoeff() == 1;
     roles.unknown.push_back(on_box || roles.given[node] >= 0 ? -1 : roles.n_unknown++);
   }
-  std::vector<detail::Tetrahedron> tetrahedra;
+  std::vector<detail::Simplex> tetrahedra;
   for (const ElementBlock& block : mesh.blocks)
     for (Index e = 0; block.type == test::tetrahedron_type && e < block.size(); ++e) {
       const auto t = block.element(e);

@@ -9,15 +9,17 @@ find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)
 find_path(LAPACKE_INCLUDE_DIR lapacke.h REQUIRED)
 find_library(LAPACKE_LIBRARY lapacke REQUIRED)
 find_library(OPENBLAS_LIBRARY openblas REQUIRED)
+find_path(MUPARSER_INCLUDE_DIR muParser.h REQUIRED)
+find_library(MUPARSER_LIBRARY muparser REQUIRED)
 find_path(OPENBLAS_INCLUDE_DIR cblas.h PATH_SUFFIXES openblas REQUIRED)
 
 # Seen by the project's own sources only; the public headers need Eigen and nothing else.
 add_library(roughmesh_private_dependencies INTERFACE)
 target_include_directories(roughmesh_private_dependencies SYSTEM INTERFACE
-  ${RANDOM123_INCLUDE_DIR} ${XXHASH_INCLUDE_DIR} ${TOMLPLUSPLUS_INCLUDE_DIR} ${LAPACKE_INCLUDE_DIR} ${OPENBLAS_INCLUDE_DIR})
+  ${RANDOM123_INCLUDE_DIR} ${XXHASH_INCLUDE_DIR} ${TOMLPLUSPLUS_INCLUDE_DIR} ${LAPACKE_INCLUDE_DIR} ${OPENBLAS_INCLUDE_DIR} ${MUPARSER_INCLUDE_DIR})
 target_link_libraries(roughmesh_private_dependencies INTERFACE
-  TBB::tbb fmt::fmt nlohmann_json::nlohmann_json ${LAPACKE_LIBRARY} ${OPENBLAS_LIBRARY})
+  TBB::tbb fmt::fmt nlohmann_json::nlohmann_json ${LAPACKE_LIBRARY} ${OPENBLAS_LIBRARY} ${MUPARSER_LIBRARY})
 
 # What a program that uses the installed static library has to link; cmake/roughmesh-config.cmake.in
 # finds them where that program is built.
-set(roughmesh_installed_dependencies TBB::tbb fmt::fmt roughmesh::lapacke roughmesh::openblas)
+set(roughmesh_installed_dependencies TBB::tbb fmt::fmt roughmesh::lapacke roughmesh::openblas roughmesh::muparser)

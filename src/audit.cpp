@@ -56,6 +56,19 @@ std::vector<Index> curve_through(const std::vector<Vec3>& points, double shift) 
   return curve;
 }
 
+/// Places whose Euclidean distance is small where theirs is. Pieces of a curve, one step apart in
+/// y, are moved as far apart as they are long.
+std::vector<Vec3> comparable_places(std::span<const Vec3> points, const Distance& distance) {
+  double step = 1;
+  if (distance.kind() == DistanceKind::curve) {
+    step = 0;
+    for (const Vec3& x : points) step = std::max(step, x.x());
+  }
+  std::vector<Vec3> places(points.begin(), points.end());
+  for (Vec3& x : places) x = distance.stretch() * Vec3(x.x(), step * x.y(), x.z());
+  return places;
+}
+
 struct NearPairs {
   std::vector<PointPair> pairs;
   double shortest = 0;  ///< shortest positive distance; 0 if there is none
@@ -67,8 +80,7 @@ struct NearPairs {
 /// one curve at most, and two curves are left on which the closest pair stays together.
 NearPairs near_pairs(std::span<const Vec3> points, const Distance& distance) {
   constexpr int n_curves = 5;
-  std::vector<Vec3> stretched(points.begin(), points.end());
-  for (Vec3& x : stretched) x = distance.stretch() * x;
+  const std::vector<Vec3> stretched = comparable_places(points, distance);
   std::vector<std::pair<double, PointPair>> steps;
   for (int c = 0; c < n_curves; ++c) {
     const std::vector<Index> curve = curve_through(stretched, static_cast<double>(c) / n_curves);
@@ -88,10 +100,13 @@ NearPairs near_pairs(std::span<const Vec3> points, const Distance& distance) {
 }
 
 /// Strata of equal ratio from the shortest distance to one that no pair exceeds (by the triangle
-/// inequality, twice the largest distance from any one point).
+/// inequality, twice the largest distance from any one point). Points of different pieces of a
+/// curve are infinitely far apart and belong to the last stratum.
 Strata make_strata(std::span<const Vec3> points, const Distance& distance, double shortest) {
   double largest = shortest;
-  for (const Vec3& x : points) largest = std::max(largest, 2 * distance(points[0], x));
+  for (const Vec3& x : points)
+    if (const double r = distance(points[0], x); std::isfinite(r))
+      largest = std::max(largest, 2 * r);
   Strata strata{};
   for (std::size_t s = 1; s < n_strata; ++s)
     strata[s] = shortest * std::pow(largest / shortest, static_cast<double>(s) / n_strata);
@@ -127,7 +142,9 @@ double error_of(double covariance, double rho) {
 
 }  // namespace
 
-std::vector<PointPair> audited_pairs(std::span<const Vec3> points, const Distance& distance) {
+std::vector<PointPair> audited_pairs(const Correlation& correlation) {
+  const std::span<const Vec3> points = correlation.places();
+  const Distance& distance = correlation.distance();
   const std::size_t n = points.size();
   if (n < 2 || n * (n - 1) / 2 <= max_pairs) return all_pairs(n);
   NearPairs near = near_pairs(points, distance);
@@ -143,10 +160,10 @@ std::vector<PointPair> audited_pairs(std::span<const Vec3> points, const Distanc
   return pairs;
 }
 
-Audit audit_covariance(const Factor& factor, std::span<const Vec3> points,
-                       const Autocorrelation& autocorrelation, const Distance& distance) {
-  std::vector<PointPair> pairs = audited_pairs(points, distance);
-  const std::size_t n = points.size(), n_pairs = pairs.size();
+Audit audit_covariance(const Factor& factor, const Correlation& correlation) {
+  std::vector<PointPair> pairs = audited_pairs(correlation);
+  const auto n = static_cast<std::size_t>(correlation.n_points());
+  const std::size_t n_pairs = pairs.size();
   const std::size_t n_diagonal = std::min(n, max_diagonal);
   for (std::size_t k = 0; k < n_diagonal; ++k) {
     const auto point = static_cast<Index>(k * n / n_diagonal);
@@ -155,8 +172,7 @@ Audit audit_covariance(const Factor& factor, std::span<const Vec3> points,
   const std::vector<double> covariances = factor.covariances(pairs);
   Audit audit{0, static_cast<Index>(n_pairs), static_cast<Index>(n_diagonal)};
   for (std::size_t p = 0; p < pairs.size(); ++p) {
-    const auto [i, j] = pairs[p];
-    const double rho = autocorrelation.rho(distance(points[i], points[j]));
+    const double rho = correlation(pairs[p].first, pairs[p].second);
     audit.covariance_error = std::max(audit.covariance_error, error_of(covariances[p], rho));
   }
   return audit;

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "autocorrelation_table.hpp"
 #include "gamma_function.hpp"
 #include "matern.hpp"
 #include "spectrum_share.hpp"
@@ -17,13 +18,14 @@
 namespace roughmesh {
 namespace {
 
-constexpr std::array<std::pair<Family, std::string_view>, 6> family_names = {
+constexpr std::array<std::pair<Family, std::string_view>, 7> family_names = {
     {{Family::gaussian, "gaussian"},
      {Family::exponential, "exponential"},
      {Family::matern, "matern"},
      {Family::self_affine, "self-affine"},
      {Family::stretched, "stretched"},
-     {Family::rational_quadratic, "rational-quadratic"}}};
+     {Family::rational_quadratic, "rational-quadratic"},
+     {Family::table, "table"}}};
 
 constexpr std::array<std::pair<LengthDefinition, std::string_view>, 4> definition_names = {
     {{LengthDefinition::formula, "formula"},
@@ -89,6 +91,23 @@ double required_shape(const AutocorrelationOptions& options) {
   return 0;
 }
 
+// A table is its own scale.
+void check_table(const AutocorrelationOptions& options) {
+  if (options.family != Family::table) {
+    if (options.table.empty()) return;
+    throw InputError(
+        fmt::format("--table is given, but belongs to the autocorrelation family table, not to {}; "
+                    "leave it out",
+                    name(options.family)));
+  }
+  if (options.table.empty())
+    throw InputError("the autocorrelation family table needs --table, a file of pairs r, rho");
+  if (options.length || options.length_definition != LengthDefinition::formula)
+    throw InputError(
+        "--length and --length-definition do not go with --acf table: the scale is in the table; "
+        "leave them out");
+}
+
 // Length and roll-off exclude each other; the roll-off is a wavelength, whatever --length means.
 void check_length(const AutocorrelationOptions& options) {
   if (options.length) {
@@ -135,6 +154,8 @@ double decay_distance(Family family, double shape, double depth) {
       return matern_decay_distance(shape, depth);
     case Family::stretched:
       return std::pow(depth, 1 / shape);
+    case Family::table:
+      break;
     case Family::rational_quadratic:
       return std::sqrt(-2 * shape * std::expm1(-depth / shape)) * std::exp(depth / shape / 2);
   }
@@ -154,6 +175,8 @@ double integral_scale(Family family, double shape) {
       return std::sqrt(half_pi / shape) * detail::gamma_ratio(shape);
     case Family::stretched:
       return std::tgamma(1 + 1 / shape);
+    case Family::table:
+      break;
     case Family::rational_quadratic:
       if (shape <= 0.5) return std::numeric_limits<double>::infinity();
       return std::sqrt(half_pi * shape) / detail::gamma_ratio(shape - 0.5);
@@ -192,6 +215,13 @@ double definition_factor(const AutocorrelationOptions& options, double shape) {
   return unit.integral.value_or(std::numeric_limits<double>::infinity());
 }
 
+EquivalentLengths lengths_of(const detail::AutocorrelationTable& table) {
+  return {.formula = {},
+          .one_over_e = table.decay_distance(std::exp(-one_over_e_depth)),
+          .integral = table.integral(),
+          .sal = table.decay_distance(std::exp(-sal_depth))};
+}
+
 double formula_length(const AutocorrelationOptions& options, double shape) {
   // Roll-off wavenumber q_r = sqrt(2 H) / l (docs/math.md, eq. 7).
   if (options.rolloff) return std::sqrt(2 * shape) * *options.rolloff / (2 * std::numbers::pi);
@@ -212,12 +242,18 @@ std::string_view name(LengthDefinition definition) { return name_in(definition_n
 
 Autocorrelation::Autocorrelation(const AutocorrelationOptions& options) : family_(options.family) {
   check_parameters(options);
+  check_table(options);
+  if (family_ == Family::table) {
+    table_ = std::make_shared<const detail::AutocorrelationTable>(options.table);
+    length_ = table_->decay_distance(std::exp(-one_over_e_depth)) / std::numbers::sqrt2;
+    return;
+  }
   check_length(options);
   shape_ = required_shape(options);
   length_ = formula_length(options, shape_);
   const bool is_matern = family_ == Family::matern || family_ == Family::self_affine;
   if (is_matern && !detail::is_half_integer_matern(shape_))
-    table_ = std::make_shared<const detail::MaternTable>(shape_);
+    matern_table_ = std::make_shared<const detail::MaternTable>(shape_);
 }
 
 double Autocorrelation::rho(double r) const {
@@ -229,25 +265,28 @@ double Autocorrelation::rho(double r) const {
       return std::exp(-x);
     case Family::matern:
     case Family::self_affine:
-      return table_ ? table_->rho(x) : detail::matern_half_integer(shape_, x);
+      return matern_table_ ? matern_table_->rho(x) : detail::matern_half_integer(shape_, x);
     case Family::stretched:
       return shape_ == 2 ? std::exp(-x * x) : std::exp(-std::pow(x, shape_));
     case Family::rational_quadratic: {
       const double ratio = x / std::sqrt(2 * shape_);
       return std::exp(-shape_ * std::log1p(ratio * ratio));
     }
+    case Family::table:
+      return table_->rho(r);
   }
   return 0;
 }
 
 EquivalentLengths Autocorrelation::equivalent_lengths() const {
-  return lengths_of(family_, shape_, length_);
+  return table_ ? lengths_of(*table_) : lengths_of(family_, shape_, length_);
 }
 
 double Autocorrelation::spectrum_share_above(double q, int dimension) const {
   if (!(q >= 0)) throw InputError(fmt::format("wavenumber is {}; it must be at least 0", q));
   if (dimension != 1 && dimension != 2)
     throw InputError(fmt::format("dimension of a spectrum is {}; it must be 1 or 2", dimension));
+  if (table_) return table_->spectrum_share_above(q, dimension);
   return detail::spectrum_share_above(family_, shape_, q * length_, dimension);
 }
 
@@ -263,11 +302,22 @@ std::optional<double> Autocorrelation::slope_variance() const {
     case Family::stretched:
       if (shape_ == 2) return 2 * curvature;
       return {};
+    case Family::table:
+      return table_->slope_variance();
     case Family::exponential:
     case Family::self_affine:
       return {};
   }
   return {};
+}
+
+std::span<const GaussianTerm> Autocorrelation::gaussian_terms() const {
+  return table_ ? table_->terms() : std::span<const GaussianTerm>();
+}
+
+std::optional<double> Autocorrelation::fit_residual() const {
+  if (!table_) return {};
+  return table_->residual();
 }
 
 std::vector<std::string> Autocorrelation::citations() const {
@@ -298,6 +348,15 @@ std::vector<std::string> Autocorrelation::citations() const {
       return {
           "Rasmussen, Williams (2006), Gaussian processes for machine learning, "
           "doi:10.7551/mitpress/3206.001.0001"};
+    case Family::table:
+      if (gaussian_terms().empty())
+        return {
+            "Fritsch, Carlson (1980), Monotone piecewise cubic interpolation, "
+            "doi:10.1137/0717021"};
+      return {
+          "Schoenberg (1938), Metric spaces and completely monotone functions, "
+          "doi:10.2307/1968466",
+          "Lawson, Hanson (1974), Solving least squares problems, doi:10.1137/1.9781611971217"};
   }
   return {};
 }

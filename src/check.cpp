@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -15,6 +16,7 @@
 #include "corners.hpp"
 #include "messages.hpp"
 #include "parallel.hpp"
+#include "plane.hpp"
 
 namespace roughmesh {
 namespace {
@@ -78,9 +80,10 @@ Vec3 face_vector(std::span<const Index> nodes, std::span<const Vec3> positions) 
 // Corners as seen from the side from which the face at its original place runs counter-clockwise:
 // negative where it has turned over.
 CornerJacobians face_jacobians(ElementShape shape, std::span<const Index> nodes,
-                               std::span<const Vec3> positions, std::span<const Vec3> original) {
+                               std::span<const Vec3> positions, std::span<const Vec3> original,
+                               const std::optional<Vec3>& plane_normal) {
   CornerJacobians result;
-  Vec3 normal = face_vector(nodes, positions).stableNormalized();
+  Vec3 normal = plane_normal ? *plane_normal : face_vector(nodes, positions).stableNormalized();
   if (normal.dot(face_vector(nodes, original)) < 0) normal = -normal;
   const double factor = ideal_factor(shape);
   const std::size_t n = nodes.size();
@@ -98,6 +101,7 @@ struct BlockView {
   const ElementBlock& block;
   std::span<const Vec3> original;
   std::span<const Vec3> moved;
+  std::optional<Vec3> plane_normal = {};  // of both
 
   std::span<const Index> corners(Index element) const {
     const auto n = static_cast<std::size_t>(n_corners(block.type.shape));
@@ -106,7 +110,7 @@ struct BlockView {
   CornerJacobians jacobians(Index element, std::span<const Vec3> positions) const {
     const ElementShape shape = block.type.shape;
     if (dimension(shape) == 3) return volume_jacobians(shape, corners(element), positions);
-    return face_jacobians(shape, corners(element), positions, original);
+    return face_jacobians(shape, corners(element), positions, original, plane_normal);
   }
 };
 
@@ -146,6 +150,7 @@ struct Bad {
 struct Summary {
   std::int64_t n_inverted = 0;
   double min_quality = 1;
+  std::int64_t n_curved = 0;
   std::vector<Bad> worst;  // ascending, at most most_findings
 
   void add_inverted(const Bad& bad) {
@@ -159,6 +164,7 @@ struct Summary {
   void add(const Summary& other) {
     n_inverted += other.n_inverted;
     min_quality = std::min(min_quality, other.min_quality);
+    n_curved += other.n_curved;
     worst.insert(worst.end(), other.worst.begin(), other.worst.end());
     keep_worst();
   }
@@ -178,13 +184,15 @@ Summary summarize_range(const BlockView& view, std::size_t block, std::size_t be
   return summary;
 }
 
-Summary summarize(const Mesh& mesh, std::span<const Vec3> moved) {
+Summary summarize(const Mesh& mesh, std::span<const Vec3> moved,
+                  const std::optional<Vec3>& plane_normal) {
   constexpr std::size_t grain = 2048;
   const int dim = dimension(mesh);
   Summary total;
   for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
-    const BlockView view{mesh.blocks[b], mesh.nodes, moved};
+    const BlockView view{mesh.blocks[b], mesh.nodes, moved, plane_normal};
     if (dim < 2 || dimension(view.block.type.shape) != dim) continue;
+    if (view.block.type.order > 1) total.n_curved += view.block.size();
     const std::size_t n = view.block.tags.size();
     std::vector<Summary> parts((n + grain - 1) / grain);
     detail::parallel_for(n, grain, [&](std::size_t begin, std::size_t end) {
@@ -228,9 +236,25 @@ Finding make_finding(const BlockView& view, const Bad& bad) {
   Vec3 centre = Vec3::Zero();
   const auto corners = view.corners(bad.element);
   for (const Index node : corners) centre += view.moved[node];
-  const char* what = dimension(view.block.type.shape) == 3 ? "inverted" : "folded";
+  const bool is_cell = dimension(view.block.type.shape) == 3 || view.plane_normal;
+  const char* what = is_cell ? "inverted" : "folded";
   return {fmt::format("{} {}", what, name(view.block.type)), bad.tag,
           centre / static_cast<double>(corners.size()), bad.value, 0.0};
+}
+
+// Normal of the plane of a planar mesh that was moved within it.
+std::optional<Vec3> common_plane(const Mesh& mesh, std::span<const Vec3> moved) {
+  if (dimension(mesh) != 2) return std::nullopt;
+  const detail::PlaneFit plane = detail::fit_plane(mesh);
+  if (!plane.is_planar()) return std::nullopt;
+  double in_plane = 0, out_of_plane = 0;
+  for (std::size_t node = 0; node < moved.size(); ++node) {
+    const Vec3 shift = moved[node] - mesh.nodes[node];
+    in_plane = std::max(in_plane, shift.cross(*plane.normal).norm());
+    out_of_plane = std::max(out_of_plane, std::abs(shift.dot(*plane.normal)));
+  }
+  constexpr double round_off = 1e-6;
+  return out_of_plane <= round_off * in_plane ? plane.normal : std::nullopt;
 }
 
 void check_positions(const Mesh& mesh, std::span<const Vec3> moved) {
@@ -246,15 +270,18 @@ void check_positions(const Mesh& mesh, std::span<const Vec3> moved) {
 
 }  // namespace
 
-double min_quality(const Mesh& mesh) { return summarize(mesh, mesh.nodes).min_quality; }
+double min_quality(const Mesh& mesh) {
+  return summarize(mesh, mesh.nodes, std::nullopt).min_quality;
+}
 
 MeshCheck check_mesh(const Mesh& mesh, std::span<const Vec3> moved) {
   check_positions(mesh, moved);
-  Summary summary = summarize(mesh, moved);
+  const std::optional<Vec3> plane_normal = common_plane(mesh, moved);
+  Summary summary = summarize(mesh, moved, plane_normal);
   summary.add(summarize_loose_faces(mesh, moved));
-  MeshCheck check{summary.n_inverted, summary.min_quality, {}};
+  MeshCheck check{summary.n_inverted, summary.min_quality, summary.n_curved, {}};
   for (const Bad& bad : summary.worst)
-    check.findings.push_back(make_finding({mesh.blocks[bad.block], mesh.nodes, moved}, bad));
+    check.findings.push_back(make_finding({mesh.blocks[bad.block], mesh.nodes, moved, plane_normal}, bad));
   return check;
 }
 

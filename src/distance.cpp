@@ -9,6 +9,8 @@
 #include <Eigen/Dense>
 #include <fmt/format.h>
 
+#include "nearest_image.hpp"
+
 namespace roughmesh {
 namespace {
 
@@ -75,6 +77,17 @@ Sphere geometric_fit(const NormalizedPoints& points) {
   return sphere;
 }
 
+void check_period(const Vec3& period) {
+  for (const double length : period)
+    if (!(length >= 0) || !std::isfinite(length))
+      throw InputError(
+          fmt::format("a period of {} along an axis; --period must be greater than 0, or 0 along "
+                      "an axis that is not periodic",
+                      length));
+  if (period.isZero(0))
+    throw InputError("no axis has a period; give --period or choose --distance euclidean");
+}
+
 double relative_length(double reference, double length) {
   return length == reference ? 1 : reference / length;
 }
@@ -101,7 +114,19 @@ Sphere fit_sphere(std::span<const Vec3> points) {
 }
 
 std::string_view name(DistanceKind kind) {
-  return kind == DistanceKind::great_circle ? "great-circle" : "euclidean";
+  switch (kind) {
+    case DistanceKind::euclidean:
+      break;
+    case DistanceKind::great_circle:
+      return "great-circle";
+    case DistanceKind::periodic:
+      return "periodic";
+    case DistanceKind::minimum_image:
+      return "minimum-image";
+    case DistanceKind::curve:
+      return "curve";
+  }
+  return "euclidean";
 }
 
 Distance Distance::euclidean() { return {}; }
@@ -159,8 +184,59 @@ Distance Distance::great_circle(std::span<const Vec3> points) {
   return great_circle(sphere);
 }
 
+Distance Distance::with_period(DistanceKind kind, const Vec3& period,
+                               const Anisotropy& anisotropy) {
+  check_period(period);
+  Distance result = stretched(anisotropy);
+  Eigen::Matrix3d off_diagonal = result.stretch_;
+  off_diagonal.diagonal().setZero();
+  if (!off_diagonal.isZero(0))
+    throw InputError(
+        fmt::format("--angle turns the axes of the lengths, but --distance {} needs lengths along "
+                    "the axes of the period; leave --angle out",
+                    name(kind)));
+  result.kind_ = kind;
+  result.period_ = period;
+  return result;
+}
+
+Distance Distance::periodic(const Vec3& period, const Anisotropy& anisotropy) {
+  return with_period(DistanceKind::periodic, period, anisotropy);
+}
+
+Distance Distance::minimum_image(const Vec3& period, const Anisotropy& anisotropy) {
+  return with_period(DistanceKind::minimum_image, period, anisotropy);
+}
+
+Distance Distance::curve(std::vector<double> closed_lengths) {
+  if (closed_lengths.empty())
+    throw InputError("distance along a curve without pieces; select lines");
+  for (const double length : closed_lengths)
+    if (!(length > 0))
+      throw InputError(
+          fmt::format("a piece of the curve has length {}; it must be greater than 0", length));
+  Distance result;
+  result.kind_ = DistanceKind::curve;
+  result.closed_lengths_ = std::make_shared<const std::vector<double>>(std::move(closed_lengths));
+  return result;
+}
+
+std::span<const double> Distance::closed_lengths() const {
+  return closed_lengths_ ? std::span<const double>(*closed_lengths_) : std::span<const double>();
+}
+
+double Distance::along_curve(const Vec3& x, const Vec3& y) const {
+  if (x.y() != y.y()) return std::numeric_limits<double>::infinity();
+  const double length = (*closed_lengths_)[static_cast<std::size_t>(x.y())];
+  const double arc = std::abs(x.x() - y.x());
+  return std::min(arc, std::abs(length - arc));
+}
+
 double Distance::operator()(const Vec3& x, const Vec3& y) const {
   if (kind_ == DistanceKind::euclidean) return (stretch_ * (x - y)).norm();
+  if (kind_ == DistanceKind::curve) return along_curve(x, y);
+  if (kind_ != DistanceKind::great_circle)
+    return (stretch_ * detail::nearest_image(x - y, period_)).norm();
   const Vec3 a = x - centre_, b = y - centre_;
   return radius_ * std::atan2(a.cross(b).norm(), a.dot(b));
 }

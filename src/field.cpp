@@ -31,34 +31,28 @@ std::string_view name(Factorization factorization) {
 }
 
 struct FieldSampler::Plan {
-  std::vector<Vec3> points;
-  Autocorrelation autocorrelation;
-  Distance distance;
+  Correlation correlation;
   detail::PreparedField field;
 };
 
 namespace {
 
-void check_input(std::span<const Vec3> points, const FieldOptions& options) {
+void check_input(const Correlation& correlation, const FieldOptions& options) {
   if (!(options.tolerance > 0) || !std::isfinite(options.tolerance))
     throw InputError(fmt::format("tolerance {} is out of range; give a finite number above 0",
                                  options.tolerance));
-  if (points.empty()) throw InputError("a field needs at least one point; select a surface");
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (!points[i].allFinite())
-      throw InputError(fmt::format(
-          "point {} of the field has a coordinate that is not finite; mend the mesh", i));
+  if (correlation.n_points() == 0)
+    throw InputError("a field needs at least one point; select a surface");
 }
 
 }  // namespace
 
-FieldSampler::FieldSampler(std::span<const Vec3> points, const Autocorrelation& autocorrelation,
-                           const Distance& distance, const FieldOptions& options) {
-  check_input(points, options);
+FieldSampler::FieldSampler(const Correlation& correlation, const FieldOptions& options) {
+  check_input(correlation, options);
   detail::PreparedField field =
-      detail::prepare_cholesky(detail::autocorrelation_matrix(points, autocorrelation, distance));
-  plan_.reset(
-      new Plan{{points.begin(), points.end()}, autocorrelation, distance, std::move(field)});
+      detail::prepare_cholesky(detail::autocorrelation_matrix(correlation));
+  field.summary.minimum_image_difference = correlation.minimum_image_difference();
+  plan_.reset(new Plan{correlation, std::move(field)});
 }
 
 FieldSampler::~FieldSampler() = default;
@@ -70,7 +64,7 @@ std::vector<double> FieldSampler::heights(std::uint64_t seed, std::uint64_t real
 }
 
 double FieldSampler::covariance(Index i, Index j) const {
-  const auto n = static_cast<Index>(plan_->points.size());
+  const Index n = plan_->correlation.n_points();
   if (std::min(i, j) < 0 || std::max(i, j) >= n)
     throw InputError(
         fmt::format("covariance of points {} and {}: there are points 0 to {}", i, j, n - 1));
@@ -79,8 +73,7 @@ double FieldSampler::covariance(Index i, Index j) const {
 }
 
 Audit FieldSampler::audit() const {
-  return detail::audit_covariance(plan_->field.factor, plan_->points, plan_->autocorrelation,
-                                  plan_->distance);
+  return detail::audit_covariance(plan_->field.factor, plan_->correlation);
 }
 
 const FieldSummary& FieldSampler::summary() const { return plan_->field.summary; }

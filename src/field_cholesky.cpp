@@ -167,13 +167,11 @@ PreparedField prepare(const AutocorrelationMatrix& matrix) {
 
 }  // namespace
 
-AutocorrelationMatrix autocorrelation_matrix(std::span<const Vec3> points,
-                                             const Autocorrelation& autocorrelation,
-                                             const Distance& distance) {
-  return {points.size(), [=, &autocorrelation, &distance](std::size_t j, std::span<double> below) {
-            const Vec3& x = points[j];
+AutocorrelationMatrix autocorrelation_matrix(const Correlation& correlation) {
+  return {static_cast<std::size_t>(correlation.n_points()),
+          [&correlation](std::size_t j, std::span<double> below) {
             for (std::size_t i = 0; i < below.size(); ++i)
-              below[i] = autocorrelation.rho(distance(points[j + 1 + i], x));
+              below[i] = correlation(static_cast<Index>(j + 1 + i), static_cast<Index>(j));
           }};
 }
 

@@ -19,10 +19,8 @@ struct AutocorrelationMatrix {
   std::function<void(std::size_t j, std::span<double> below)> write_below_diagonal;
 };
 
-/// The points, the function and the distance must outlive the result.
-AutocorrelationMatrix autocorrelation_matrix(std::span<const Vec3> points,
-                                             const Autocorrelation& autocorrelation,
-                                             const Distance& distance);
+/// The correlation must outlive the result.
+AutocorrelationMatrix autocorrelation_matrix(const Correlation& correlation);
 
 struct PreparedField {
   Factor factor;

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -23,9 +24,13 @@ struct Holds {
   bool several_groups = false;  ///< an element may be in more than one
   bool group_names = false;
   bool periodic_links = false;
-  bool tags = false;          ///< numbers of nodes and elements
-  bool point_fields = false;  ///< WriteOptions::fields
-  bool points = true;         ///< elements of dimension 0
+  bool tags = false;           ///< numbers of nodes and elements
+  bool point_fields = false;   ///< WriteOptions::fields
+  bool group_numbers = true;   ///< where it holds groups; else it holds them by name only
+  bool quadrangles = true;     ///< else each is written as two triangles
+  bool full_precision = true;  ///< positions as float64
+  int least_dimension = 0;     ///< of elements; others are left out
+  int most_dimension = 3;
 };
 
 struct FileFormat {
@@ -48,14 +53,18 @@ struct FileFormat {
   /// From the arrays alone, of a mesh that passed the check. Null if never written anew.
   void (*write_new)(const Mesh& mesh, const WriteOptions& options, OutputFile& output) = nullptr;
   Holds holds = {};
+  std::optional<Holds> text_holds = {};  ///< where a text file holds something else
+  /// Phrases for what `holds` cannot tell of. Null if there is nothing.
+  std::vector<std::string> (*losses)(const Mesh& mesh) = nullptr;
   /// Largest distance between neighbouring numbers that patching can write at the coordinates of
   /// the mesh; 0, or null, where it is that of the number format.
   double (*spacing)(const Mesh& mesh) = nullptr;
   std::vector<Encoding> encodings = {Encoding::text};  ///< of new files, the usual one first
 };
 
-extern const FileFormat msh4_format, msh2_format, stl_format, ply2_format, abaqus_format,
-    nastran_format, unv_format, vtu_format;
+extern const FileFormat msh4_format, msh2_format, stl_format, ply_format, off_format, vtk_format,
+    medit_format, su2_format, ply2_format, obj_format, abaqus_format, nastran_format, unv_format,
+    vtu_format;
 
 /// Every format, in the order in which they are asked whether they recognize a file.
 std::span<const FileFormat* const> file_formats();

@@ -18,22 +18,38 @@ namespace {
 constexpr double tolerance = 1e-12;  // relative residual
 constexpr int most_iterations = 10'000;
 constexpr std::size_t rows_per_range = 1024;
-// Six volumes over the cube of the longest edge, below which a tetrahedron is left out.
+// Six volumes over the cube of the longest edge (two areas over its square), below which a simplex
+// is left out.
 constexpr double flat = 1e-10;
 
 using Solver = Eigen::ConjugateGradient<HarmonicExtension::Matrix, Eigen::Lower | Eigen::Upper,
                                         Eigen::DiagonalPreconditioner<double>>;
 
-// Gradients of the four linear shape functions.
+std::size_t n_corners(const Simplex& simplex) { return simplex[3] < 0 ? 3 : 4; }
+
+std::span<const Index> corners(const Simplex& simplex) {
+  return std::span(simplex).first(n_corners(simplex));
+}
+
+// Gradients of the linear shape functions.
 struct Gradients {
   std::array<Vec3, 4> of_corner;
   bool is_flat = false;
 };
 
-Gradients gradients(std::span<const Vec3> nodes, const Tetrahedron& t) {
-  const Vec3 a = nodes[t[1]] - nodes[t[0]];
-  const Vec3 b = nodes[t[2]] - nodes[t[0]];
-  const Vec3 c = nodes[t[3]] - nodes[t[0]];
+Gradients gradients_of_triangle(const Vec3& a, const Vec3& b) {
+  const Vec3 normal = a.cross(b);
+  const double longest = std::max({a.squaredNorm(), b.squaredNorm(), (b - a).squaredNorm()});
+  Gradients g;
+  g.is_flat = !(normal.norm() > flat * longest);
+  if (g.is_flat) return g;
+  g.of_corner[1] = b.cross(normal) / normal.squaredNorm();
+  g.of_corner[2] = normal.cross(a) / normal.squaredNorm();
+  g.of_corner[0] = -(g.of_corner[1] + g.of_corner[2]);
+  return g;
+}
+
+Gradients gradients_of_tetrahedron(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double det = a.cross(b).dot(c);
   const double longest =
       std::sqrt(std::max({a.squaredNorm(), b.squaredNorm(), c.squaredNorm(), (b - a).squaredNorm(),
@@ -48,42 +64,54 @@ Gradients gradients(std::span<const Vec3> nodes, const Tetrahedron& t) {
   return g;
 }
 
-// Only the ratio of weights matters; relative to the mean volume they suit any unit of length.
-double mean_volume(std::span<const Vec3> nodes, std::span<const Tetrahedron> tetrahedra) {
-  double sum = 0;
-  for (const Tetrahedron& t : tetrahedra)
-    sum += std::abs(determinant(nodes[t[0]], nodes[t[1]], nodes[t[2]], nodes[t[3]])) / 6;
-  return tetrahedra.empty() ? 1 : sum / static_cast<double>(tetrahedra.size());
+Gradients gradients(std::span<const Vec3> nodes, const Simplex& s) {
+  const Vec3& origin = nodes[s[0]];
+  const Vec3 a = nodes[s[1]] - origin, b = nodes[s[2]] - origin;
+  if (n_corners(s) == 3) return gradients_of_triangle(a, b);
+  return gradients_of_tetrahedron(a, b, nodes[s[3]] - origin);
 }
 
-// Tetrahedra at each unknown, in ascending order.
+double volume(std::span<const Vec3> nodes, const Simplex& s) {
+  if (n_corners(s) == 3)
+    return (nodes[s[1]] - nodes[s[0]]).cross(nodes[s[2]] - nodes[s[0]]).norm() / 2;
+  return std::abs(determinant(nodes[s[0]], nodes[s[1]], nodes[s[2]], nodes[s[3]])) / 6;
+}
+
+// Only the ratio of weights matters; relative to the mean volume they suit any unit of length.
+double mean_volume(std::span<const Vec3> nodes, std::span<const Simplex> simplices) {
+  double sum = 0;
+  for (const Simplex& s : simplices) sum += volume(nodes, s);
+  return simplices.empty() ? 1 : sum / static_cast<double>(simplices.size());
+}
+
+// Simplices at each unknown, in ascending order.
 struct Adjacency {
   std::vector<std::size_t> offsets;
-  std::vector<Index> tetrahedra;
+  std::vector<Index> simplices;
 
   std::span<const Index> at(std::size_t unknown) const {
-    return {tetrahedra.data() + offsets[unknown], offsets[unknown + 1] - offsets[unknown]};
+    return {simplices.data() + offsets[unknown], offsets[unknown + 1] - offsets[unknown]};
   }
 };
 
 template <class Visit>
-void for_each_unknown(std::span<const Tetrahedron> tetrahedra, const NodeRoles& roles,
+void for_each_unknown(std::span<const Simplex> simplices, const NodeRoles& roles,
                       Visit&& visit) {
-  for (std::size_t t = 0; t < tetrahedra.size(); ++t)
-    for (const Index node : tetrahedra[t])
+  for (std::size_t t = 0; t < simplices.size(); ++t)
+    for (const Index node : corners(simplices[t]))
       if (roles.unknown[node] >= 0) visit(static_cast<Index>(t), roles.unknown[node]);
 }
 
-Adjacency make_adjacency(std::span<const Tetrahedron> tetrahedra, const NodeRoles& roles) {
+Adjacency make_adjacency(std::span<const Simplex> simplices, const NodeRoles& roles) {
   Adjacency adjacency;
   auto& offsets = adjacency.offsets;
   offsets.assign(static_cast<std::size_t>(roles.n_unknown) + 1, 0);
-  for_each_unknown(tetrahedra, roles, [&](Index, Index unknown) { ++offsets[unknown + 1]; });
+  for_each_unknown(simplices, roles, [&](Index, Index unknown) { ++offsets[unknown + 1]; });
   for (std::size_t i = 1; i < offsets.size(); ++i) offsets[i] += offsets[i - 1];
-  adjacency.tetrahedra.resize(offsets.back());
+  adjacency.simplices.resize(offsets.back());
   std::vector<std::size_t> next(offsets.begin(), offsets.end() - 1);
-  for_each_unknown(tetrahedra, roles,
-                   [&](Index t, Index unknown) { adjacency.tetrahedra[next[unknown]++] = t; });
+  for_each_unknown(simplices, roles,
+                   [&](Index t, Index unknown) { adjacency.simplices[next[unknown]++] = t; });
   return adjacency;
 }
 
@@ -171,25 +199,25 @@ void join(const std::vector<RowRange>& ranges, Index n_rows, Index n_columns,
   });
 }
 
-// Builds each row from the tetrahedra around its unknown: no two threads write to one number, and
-// the order of every sum is that of the tetrahedra.
+// Builds each row from the simplices around its unknown: no two threads write to one number, and
+// the order of every sum is that of the simplices.
 class Assembly {
  public:
-  Assembly(std::span<const Vec3> nodes, std::span<const Tetrahedron> tetrahedra,
+  Assembly(std::span<const Vec3> nodes, std::span<const Simplex> simplices,
            const NodeRoles& roles)
       : nodes_(nodes),
-        tetrahedra_(tetrahedra),
+        simplices_(simplices),
         roles_(roles),
-        adjacency_(make_adjacency(tetrahedra, roles)),
-        scale_(mean_volume(nodes, tetrahedra)) {}
+        adjacency_(make_adjacency(simplices, roles)),
+        scale_(mean_volume(nodes, simplices)) {}
 
   void rows(std::size_t begin, std::size_t end, RowRange& stiffness, RowRange& coupling) const {
     Row unknown, given;
     for (std::size_t i = begin; i < end; ++i) {
       unknown.clear();
       given.clear();
-      const double diagonal = add_tetrahedra(static_cast<Index>(i), unknown, given);
-      // An unknown without a tetrahedron gets the equation u = 0.
+      const double diagonal = add_simplices(static_cast<Index>(i), unknown, given);
+      // An unknown without a simplex gets the equation u = 0.
       unknown.add(static_cast<Index>(i), diagonal > 0 ? diagonal : 1);
       stiffness.append(unknown.sorted());
       coupling.append(given.sorted());
@@ -198,16 +226,16 @@ class Assembly {
 
  private:
   // Returns the diagonal entry.
-  double add_tetrahedra(Index i, Row& unknown, Row& given) const {
+  double add_simplices(Index i, Row& unknown, Row& given) const {
     double diagonal = 0;
     for (const Index number : adjacency_.at(static_cast<std::size_t>(i))) {
-      const Tetrahedron& t = tetrahedra_[number];
+      const Simplex& t = simplices_[number];
       const Gradients g = gradients(nodes_, t);
       if (g.is_flat) continue;
       std::size_t own = 0;
       while (roles_.unknown[t[own]] != i) ++own;
       diagonal += scale_ * g.of_corner[own].squaredNorm();
-      for (std::size_t k = 0; k < 4; ++k) {
+      for (std::size_t k = 0; k < n_corners(t); ++k) {
         if (k == own) continue;
         const double value = scale_ * g.of_corner[own].dot(g.of_corner[k]);
         if (roles_.unknown[t[k]] >= 0)
@@ -220,7 +248,7 @@ class Assembly {
   }
 
   std::span<const Vec3> nodes_;
-  std::span<const Tetrahedron> tetrahedra_;
+  std::span<const Simplex> simplices_;
   const NodeRoles& roles_;
   Adjacency adjacency_;
   double scale_;
@@ -237,9 +265,9 @@ void require_convergence(const Solver& solver) {
 }  // namespace
 
 HarmonicExtension::HarmonicExtension(std::span<const Vec3> nodes,
-                                     std::span<const Tetrahedron> tetrahedra,
+                                     std::span<const Simplex> simplices,
                                      const NodeRoles& roles) {
-  const Assembly assembly(nodes, tetrahedra, roles);
+  const Assembly assembly(nodes, simplices, roles);
   const auto n = static_cast<std::size_t>(roles.n_unknown);
   std::vector<RowRange> stiffness((n + rows_per_range - 1) / rows_per_range);
   std::vector<RowRange> coupling(stiffness.size());

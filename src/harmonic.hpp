@@ -12,7 +12,8 @@
 
 namespace roughmesh::detail {
 
-using Tetrahedron = std::array<Index, 4>;  ///< positions in an array of nodes
+/// Positions of the corners of a tetrahedron in an array of nodes; of a triangle, whose fourth is -1.
+using Simplex = std::array<Index, 4>;
 
 /// What is known about the displacement of each node. A node is unknown, given or, if neither
 /// number is set, stays where it is.
@@ -25,14 +26,15 @@ struct NodeRoles {
 
 /// Minimizes, for each component of the displacement u,
 ///
-///     sum over tetrahedra of  1/V * integral |grad u|^2            (docs/math.md, eq. 16)
+///     sum over simplices of  1/V * integral |grad u|^2             (docs/math.md, eq. 16)
 ///
-/// with u linear on each tetrahedron, so that small tetrahedra deform least.
+/// with u linear on each simplex, so that small ones deform least. Simplices are tetrahedra of volume
+/// V, or triangles of area V in one plane.
 class HarmonicExtension {
  public:
-  /// Nearly flat tetrahedra, whose weight would drown all others, are left out; an unknown that
-  /// has no other tetrahedron stays.
-  HarmonicExtension(std::span<const Vec3> nodes, std::span<const Tetrahedron> tetrahedra,
+  /// Nearly flat simplices, whose weight would drown all others, are left out; an unknown that
+  /// has no other simplex stays.
+  HarmonicExtension(std::span<const Vec3> nodes, std::span<const Simplex> simplices,
                     const NodeRoles& roles);
 
   /// @param given  n_given displacements, finite

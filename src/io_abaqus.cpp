@@ -374,6 +374,6 @@ const FileFormat abaqus_format = {.format = MeshFormat::abaqus,
                                             .several_groups = true,
                                             .group_names = true,
                                             .tags = true,
-                                            .points = false}};
+                                            .least_dimension = 1}};
 
 }  // namespace roughmesh::detail

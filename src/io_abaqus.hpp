@@ -11,7 +11,7 @@
 
 #include "element_table.hpp"
 #include "file_formats.hpp"
-#include "node_order.hpp"
+#include "serendipity.hpp"
 #include "scanner.hpp"
 #include "text.hpp"
 
@@ -44,7 +44,7 @@ struct AbaqusType {
 };
 /// @param name  in capitals
 std::optional<AbaqusType> abaqus_type(std::string_view name);
-const NodeOrder& abaqus_node_order();
+const SerendipityOrder& abaqus_node_order();
 
 /// *ELSET, *SURFACE and the ELSET of *ELEMENT: kept as they are listed, applied at the end.
 class AbaqusSets {

@@ -121,8 +121,8 @@ std::optional<AbaqusType> abaqus_type(std::string_view name) {
   return {};
 }
 
-const NodeOrder& abaqus_node_order() {
-  static const NodeOrder order(second_order);
+const SerendipityOrder& abaqus_node_order() {
+  static const SerendipityOrder order(second_order);
   return order;
 }
 

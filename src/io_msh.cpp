@@ -281,10 +281,20 @@ const FileFormat msh4_format = {
               .several_groups = true,
               .group_names = true,
               .periodic_links = true,
-              .tags = true}};
+              .tags = true},
+    .encodings = {Encoding::text, Encoding::binary}};
 
 // Recognized and read by the same code as MSH 4.1.
-const FileFormat msh2_format = {
-    .format = MeshFormat::msh2, .extensions = {".msh"}, .write_patched = write_patched};
+const FileFormat msh2_format = {.format = MeshFormat::msh2,
+                                .extensions = {".msh"},
+                                .write_patched = write_patched,
+                                .check_new = check_for_msh2,
+                                .write_new = write_new_msh2,
+                                .holds = {.groups = true,
+                                          .several_groups = true,
+                                          .group_names = true,
+                                          .periodic_links = true,
+                                          .tags = true},
+                                .encodings = {Encoding::text, Encoding::binary}};
 
 }  // namespace roughmesh::detail

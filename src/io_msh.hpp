@@ -12,6 +12,7 @@
 
 #include "file_formats.hpp"
 #include "node_lookup.hpp"
+#include "number_writer.hpp"
 #include "scanner.hpp"
 
 namespace roughmesh::detail {
@@ -73,6 +74,15 @@ void read_msh4_periodic(MshReader& reader);
 /// @throws InputError
 void check_for_msh(const Mesh& mesh, const std::filesystem::path& path);
 
+/// $MeshFormat and $PhysicalNames, which versions share.
+void write_msh_format(NumberWriter& numbers, std::string_view version);
+void write_msh_names(NumberWriter& numbers, const Mesh& mesh);
+
 void write_new_msh4(const Mesh& mesh, const WriteOptions& options, OutputFile& output);
+
+/// Refuses also numbers beyond 2^31 - 1, which 2.2 has no room for.
+/// @throws InputError
+void check_for_msh2(const Mesh& mesh, const std::filesystem::path& path);
+void write_new_msh2(const Mesh& mesh, const WriteOptions& options, OutputFile& output);
 
 }  // namespace roughmesh::detail

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // MSH 2.2: nodes, elements and periodic links.
-#include <map>
-#include <tuple>
-
 #include <fmt/format.h>
 
+#include "block_finder.hpp"
 #include "file_formats.hpp"
 #include "io_msh.hpp"
 
@@ -25,39 +23,6 @@ Tag checked_tag(const Scanner& scanner, Tag tag) {
     scanner.fail(fmt::format("the number {} is negative; renumber the mesh", tag));
   return tag;
 }
-
-// The block of each (type, entity, group). Files list long runs of the same, so the last one found
-// is tried first.
-class BlockFinder {
- public:
-  explicit BlockFinder(std::vector<ElementBlock>& blocks) : blocks_(&blocks) {}
-
-  ElementBlock& find(const ElementType& type, Tag entity, Tag group) {
-    const Key key(&type, entity, group);
-    if (blocks_->empty() || key != last_key_) {
-      const auto [place, is_new] = places_.try_emplace(key, blocks_->size());
-      if (is_new) add(type, entity, group);
-      last_key_ = key;
-      last_place_ = place->second;
-    }
-    return (*blocks_)[last_place_];
-  }
-
- private:
-  using Key = std::tuple<const ElementType*, Tag, Tag>;
-
-  void add(const ElementType& type, Tag entity, Tag group) {
-    ElementBlock& block = blocks_->emplace_back();
-    block.type = type;
-    block.entity = entity;
-    if (group != 0) block.physical_groups = {group};
-  }
-
-  std::vector<ElementBlock>* blocks_;
-  std::map<Key, std::size_t> places_;
-  Key last_key_;
-  std::size_t last_place_ = 0;
-};
 
 // The first tag is the physical group, the second the entity; what follows are partitions.
 ElementBlock& find_block(MshReader& reader, BlockFinder& finder, const ElementType& type,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Writes a mesh as MSH 4.1 text from its arrays.
+// Writes a mesh as MSH 4.1 from its arrays.
 #include <algorithm>
 #include <array>
 #include <map>
@@ -12,6 +12,7 @@
 #include "file_formats.hpp"
 #include "gmsh_element_types.hpp"
 #include "io_msh.hpp"
+#include "number_writer.hpp"
 
 namespace roughmesh::detail {
 namespace {
@@ -47,12 +48,15 @@ std::vector<Entity> list_entities(const Mesh& mesh) {
 
 class Writer {
  public:
-  Writer(const Mesh& mesh, OutputFile& output)
-      : mesh_(&mesh), output_(&output), entities_(list_entities(mesh)) {}
+  Writer(const Mesh& mesh, OutputFile& output, Encoding encoding)
+      : mesh_(&mesh),
+        path_(output.path()),
+        numbers_(output, encoding),
+        entities_(list_entities(mesh)) {}
 
   void write_all() {
-    line("$MeshFormat\n4.1 0 8\n$EndMeshFormat");
-    write_names();
+    write_msh_format(numbers_, "4.1");
+    write_msh_names(numbers_, *mesh_);
     write_entities();
     write_nodes();
     write_elements();
@@ -61,39 +65,51 @@ class Writer {
 
  private:
   template <typename... Values>
-  void text(fmt::format_string<Values...> format, Values&&... values) {
-    output_->write(fmt::format(format, std::forward<Values>(values)...));
+  void ints(Values... values) {
+    (numbers_.number(int32(values)), ...);
   }
-  void line(std::string_view line) { text("{}\n", line); }
+  template <typename... Values>
+  void sizes(Values... values) {
+    (numbers_.number(static_cast<std::uint64_t>(values)), ...);
+  }
+  void reals(const Vec3& x) {
+    for (int k = 0; k < 3; ++k) numbers_.number(x[k]);
+  }
+  void end_line() { numbers_.end_line(); }
+  std::int32_t int32(Tag value) const {
+    if (std::in_range<std::int32_t>(value)) return static_cast<std::int32_t>(value);
+    throw InputError(
+        fmt::format("{}: the number {} of an entity or group is beyond 2^31 - 1, which MSH cannot "
+                    "hold; renumber the groups",
+                    path_.string(), value));
+  }
 
-  void write_names() {
-    const auto is_named = [](const PhysicalGroup& group) { return !group.name.empty(); };
-    const auto n = std::count_if(mesh_->groups.begin(), mesh_->groups.end(), is_named);
-    if (n == 0) return;
-    text("$PhysicalNames\n{}\n", n);
-    for (const PhysicalGroup& group : mesh_->groups)
-      if (is_named(group)) text("{} {} \"{}\"\n", group.dimension, group.tag, group.name);
-    line("$EndPhysicalNames");
+  void begin(std::string_view section) { numbers_.text(fmt::format("${}\n", section)); }
+  void end(std::string_view section) {
+    numbers_.text(fmt::format("{}$End{}\n", numbers_.is_text() ? "" : "\n", section));
   }
 
   void write_entities() {
     std::array<int, 4> n{};
     for (const Entity& entity : entities_) ++n[static_cast<std::size_t>(entity.dimension)];
-    text("$Entities\n{}\n", fmt::join(n, " "));
+    begin("Entities");
+    sizes(n[0], n[1], n[2], n[3]);
+    end_line();
     for (const Entity& entity : entities_) write_entity(entity);
-    line("$EndEntities");
+    end("Entities");
   }
 
   void write_entity(const Entity& entity) {
     Eigen::AlignedBox3d box;
     for (const ElementBlock* block : entity.blocks)
       for (const Index node : block->nodes) box.extend(mesh_->nodes[node]);
-    const Vec3 low = box.min(), high = box.max();
-    text("{} {} {} {}", entity.tag, low[0], low[1], low[2]);
-    if (entity.dimension > 0) text(" {} {} {}", high[0], high[1], high[2]);
-    text(" {}", entity.groups.size());
-    for (const Tag group : entity.groups) text(" {}", group);
-    line(entity.dimension > 0 ? " 0" : "");
+    ints(entity.tag);
+    reals(box.min());
+    if (entity.dimension > 0) reals(box.max());
+    sizes(entity.groups.size());
+    for (const Tag group : entity.groups) ints(group);
+    if (entity.dimension > 0) sizes(0);
+    end_line();
   }
 
   // One block: which entity a node lies on is not known, and readers need any that exists.
@@ -102,10 +118,15 @@ class Writer {
         std::minmax_element(mesh_->node_tags.begin(), mesh_->node_tags.end());
     const std::size_t n = mesh_->nodes.size();
     const Entity& entity = entities_.back();
-    text("$Nodes\n1 {} {} {}\n{} {} 0 {}\n", n, *least, *greatest, entity.dimension, entity.tag, n);
-    for (const Tag tag : mesh_->node_tags) text("{}\n", tag);
-    for (const Vec3& x : mesh_->nodes) text("{} {} {}\n", x[0], x[1], x[2]);
-    line("$EndNodes");
+    begin("Nodes");
+    sizes(1, n, *least, *greatest);
+    end_line();
+    ints(entity.dimension, entity.tag, 0);
+    sizes(n);
+    end_line();
+    for (const Tag tag : mesh_->node_tags) sizes(tag), end_line();
+    for (const Vec3& x : mesh_->nodes) reals(x), end_line();
+    end("Nodes");
   }
 
   void write_elements() {
@@ -119,36 +140,49 @@ class Writer {
           greatest = std::max(greatest, tag);
         }
       }
-    text("$Elements\n{} {} {} {}\n", n_blocks, n_elements(*mesh_), least, greatest);
+    begin("Elements");
+    sizes(n_blocks, n_elements(*mesh_), least, greatest);
+    end_line();
     for (const Entity& entity : entities_)
       for (const ElementBlock* block : entity.blocks) write_block(entity, *block);
-    line("$EndElements");
+    end("Elements");
   }
 
   void write_block(const Entity& entity, const ElementBlock& block) {
-    text("{} {} {} {}\n", entity.dimension, entity.tag, gmsh_number(block.type), block.size());
+    ints(entity.dimension, entity.tag, gmsh_number(block.type));
+    sizes(block.size());
+    end_line();
     for (Index i = 0; i < block.size(); ++i) {
-      text("{}", block.tags[static_cast<std::size_t>(i)]);
-      for (const Index node : block.element(i)) text(" {}", mesh_->node_tags[node]);
-      line("");
+      sizes(block.tags[static_cast<std::size_t>(i)]);
+      for (const Index node : block.element(i)) sizes(mesh_->node_tags[node]);
+      end_line();
     }
   }
 
   void write_periodic() {
     if (mesh_->periodic_links.empty()) return;
-    text("$Periodic\n{}\n", mesh_->periodic_links.size());
-    for (const PeriodicLink& link : mesh_->periodic_links) {
-      text("{} {} {}\n{}", link.dimension, link.entity, link.master_entity, link.affine.size());
-      for (const double value : link.affine) text(" {}", value);
-      text("\n{}\n", link.nodes.size());
-      for (const auto& [slave, master] : link.nodes)
-        text("{} {}\n", mesh_->node_tags[slave], mesh_->node_tags[master]);
-    }
-    line("$EndPeriodic");
+    begin("Periodic");
+    sizes(mesh_->periodic_links.size());
+    end_line();
+    for (const PeriodicLink& link : mesh_->periodic_links) write_link(link);
+    end("Periodic");
+  }
+
+  void write_link(const PeriodicLink& link) {
+    ints(link.dimension, link.entity, link.master_entity);
+    end_line();
+    sizes(link.affine.size());
+    for (const double value : link.affine) numbers_.number(value);
+    end_line();
+    sizes(link.nodes.size());
+    end_line();
+    for (const auto& [slave, master] : link.nodes)
+      sizes(mesh_->node_tags[slave], mesh_->node_tags[master]), end_line();
   }
 
   const Mesh* mesh_;
-  OutputFile* output_;
+  std::filesystem::path path_;
+  NumberWriter numbers_;
   std::vector<Entity> entities_;
 };
 
@@ -161,8 +195,28 @@ void check_for_msh(const Mesh& mesh, const std::filesystem::path& path) {
                                    path.string(), name(block.type), block.type.n_nodes));
 }
 
-void write_new_msh4(const Mesh& mesh, const WriteOptions&, OutputFile& output) {
-  Writer(mesh, output).write_all();
+void write_msh_format(NumberWriter& numbers, std::string_view version) {
+  numbers.text(fmt::format("$MeshFormat\n{} {} 8\n", version, numbers.is_text() ? 0 : 1));
+  if (!numbers.is_text()) {
+    numbers.number(std::int32_t{1});  // tells the byte order
+    numbers.text("\n");
+  }
+  numbers.text("$EndMeshFormat\n");
+}
+
+void write_msh_names(NumberWriter& numbers, const Mesh& mesh) {
+  const auto is_named = [](const PhysicalGroup& group) { return !group.name.empty(); };
+  const auto n = std::count_if(mesh.groups.begin(), mesh.groups.end(), is_named);
+  if (n == 0) return;
+  numbers.text(fmt::format("$PhysicalNames\n{}\n", n));
+  for (const PhysicalGroup& group : mesh.groups)
+    if (is_named(group))
+      numbers.text(fmt::format("{} {} \"{}\"\n", group.dimension, group.tag, group.name));
+  numbers.text("$EndPhysicalNames\n");
+}
+
+void write_new_msh4(const Mesh& mesh, const WriteOptions& options, OutputFile& output) {
+  Writer(mesh, output, options.encoding.value_or(Encoding::text)).write_all();
 }
 
 }  // namespace roughmesh::detail

@@ -248,8 +248,8 @@ bool is_nastran(std::string_view bytes, std::string_view extension) {
 
 }  // namespace
 
-const NodeOrder& nastran_node_order() {
-  static const NodeOrder order(second_order);
+const SerendipityOrder& nastran_node_order() {
+  static const SerendipityOrder order(second_order);
   return order;
 }
 
@@ -261,7 +261,7 @@ const FileFormat nastran_format = {
     .write_patched = write_patched_nastran,
     .check_new = check_nastran,
     .write_new = write_new_nastran,
-    .holds = {.groups = true, .group_names = true, .tags = true, .points = false},
+    .holds = {.groups = true, .group_names = true, .tags = true, .least_dimension = 1},
     .spacing = nastran_spacing};
 
 }  // namespace roughmesh::detail

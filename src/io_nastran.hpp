@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "file_formats.hpp"
-#include "node_order.hpp"
+#include "serendipity.hpp"
 #include "scanner.hpp"
 
 namespace roughmesh::detail {
@@ -55,7 +55,7 @@ std::string nastran_real_16(double value);  ///< as many digits as 16 characters
 /// A unit of the last digit of nastran_real_16 for numbers of this size.
 double spacing_16(double value);
 
-const NodeOrder& nastran_node_order();
+const SerendipityOrder& nastran_node_order();
 
 void write_patched_nastran(const Mesh& mesh, OutputFile& output);
 /// 0 where each GRID is in free fields, which hold all digits.

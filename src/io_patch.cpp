@@ -4,10 +4,12 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "file_formats.hpp"
+#include "node_vectors.hpp"
 #include "scanner.hpp"
 
 namespace roughmesh::detail {
@@ -20,13 +22,17 @@ bool same_bits(const Vec3& a, const Vec3& b) {
   return same_bits(a[0], b[0]) && same_bits(a[1], b[1]) && same_bits(a[2], b[2]);
 }
 
+double as_stored(NumberFormat format, double value) {
+  return format == NumberFormat::float32 ? static_cast<float>(value) : value;
+}
+
 double as_stored(const MeshSource& source, double value) {
-  return source.coordinates == NumberFormat::float32 ? static_cast<float>(value) : value;
+  return as_stored(source.coordinates, value);
 }
 
 void TriplePatcher::replace(std::uint64_t offset, const Vec3& from, const Vec3& to) {
   copy_until(offset);
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < source_->n_coordinates; ++k) {
     copy_space();
     const std::uint64_t start = position_;
     skip_number();
@@ -39,11 +45,20 @@ void TriplePatcher::replace(std::uint64_t offset, const Vec3& from, const Vec3& 
 
 void TriplePatcher::replace(std::uint64_t offset, const Vec3& to) {
   copy_until(offset);
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < source_->n_coordinates; ++k) {
     copy_space();
     skip_number();
     write_number(to[k]);
   }
+}
+
+void TriplePatcher::replace_number(std::uint64_t offset, std::size_t n_bytes, NumberFormat format,
+                                   double value) {
+  copy_until(offset);
+  position_ += n_bytes;
+  const NumberFormat usual = std::exchange(format_, format);
+  write_number(value);
+  format_ = usual;
 }
 
 void TriplePatcher::copy_until(std::uint64_t offset) {
@@ -52,27 +67,40 @@ void TriplePatcher::copy_until(std::uint64_t offset) {
 }
 
 void TriplePatcher::copy_space() {
-  if (source_->coordinates != NumberFormat::text) return;
+  if (format_ != NumberFormat::text) return;
+  const char* const bytes = source_->file.data.get();
   std::uint64_t stop = position_;
-  while (is_space(source_->file.data[stop])) ++stop;
+  for (; stop < source_->file.size; ++stop) {
+    if (is_comment(bytes[stop]))
+      while (stop < source_->file.size && bytes[stop] != '\n') ++stop;
+    else if (!is_space(bytes[stop]))
+      break;
+  }
   copy_until(stop);
 }
 
+bool TriplePatcher::is_comment(char c) const {
+  return source_->comment != '\0' && c == source_->comment;
+}
+
 void TriplePatcher::skip_number() {
-  if (source_->coordinates != NumberFormat::text) {
-    position_ += source_->coordinates == NumberFormat::float32 ? sizeof(float) : sizeof(double);
+  if (format_ != NumberFormat::text) {
+    position_ += format_ == NumberFormat::float32 ? sizeof(float) : sizeof(double);
     return;
   }
-  while (position_ < source_->file.size && !is_space(source_->file.data[position_])) ++position_;
+  const char* const bytes = source_->file.data.get();
+  while (position_ < source_->file.size && !is_space(bytes[position_]) &&
+         !is_comment(bytes[position_]))
+    ++position_;
 }
 
 void TriplePatcher::write_number(double value) {
-  const double stored = as_stored(*source_, value);
+  const double stored = as_stored(format_, value);
   if (!std::isfinite(stored))
     throw InputError(fmt::format("{}: a coordinate of {} cannot be stored; check the displacement",
                                  output_->path().string(), value));
-  if (source_->coordinates == NumberFormat::float32) return write_bytes(static_cast<float>(stored));
-  if (source_->coordinates == NumberFormat::float64) return write_bytes(stored);
+  if (format_ == NumberFormat::float32) return write_bytes(static_cast<float>(stored));
+  if (format_ == NumberFormat::float64) return write_bytes(stored);
   output_->write(shortest(stored));
 }
 
@@ -98,12 +126,37 @@ std::string shortest(double value) {
   return {text, end};
 }
 
+namespace {
+
+void check_plane(const Mesh& mesh, Index node, const OutputFile& output) {
+  const double z = mesh.nodes[node][2];
+  if (mesh.source->n_coordinates == 2 && z != 0)
+    throw InputError(
+        fmt::format("{}: node {} has left the plane (z = {}), but the file has no z; convert it "
+                    "to a mesh in space first",
+                    output.path().string(), mesh.node_tags[node], z));
+}
+
+}  // namespace
+
 void write_patched(const Mesh& mesh, OutputFile& output) {
   const MeshSource& source = *mesh.source;
+  const std::vector<MovedVector> vectors = moved_vectors(mesh);
+  auto vector = vectors.begin();
   TriplePatcher patcher(source, output);
-  for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
-    if (!same_bits(source.positions[i], mesh.nodes[i]))
-      patcher.replace(source.offsets[i], source.positions[i], mesh.nodes[i]);
+  const auto replace_vectors_before = [&](std::uint64_t offset) {
+    patcher.set_format(source.vector_numbers);
+    for (; vector != vectors.end() && vector->offset < offset; ++vector)
+      patcher.replace(vector->offset, vector->value);
+    patcher.set_format(source.coordinates);
+  };
+  for (Index i = 0; i < mesh.n_nodes(); ++i) {
+    if (same_bits(source.positions[i], mesh.nodes[i])) continue;
+    check_plane(mesh, i, output);
+    replace_vectors_before(source.offsets[i]);
+    patcher.replace(source.offsets[i], source.positions[i], mesh.nodes[i]);
+  }
+  replace_vectors_before(source.file.size);
   patcher.finish();
 }
 

@@ -17,11 +17,15 @@ namespace roughmesh::detail {
 bool same_bits(double a, double b);
 bool same_bits(const Vec3& a, const Vec3& b);
 
-/// Replaces triples of numbers, front to back; everything between them is copied.
+/// Replaces triples of numbers (pairs in a plane mesh), front to back; everything between them is
+/// copied.
 class TriplePatcher {
  public:
   TriplePatcher(const MeshSource& source, OutputFile& output)
-      : source_(&source), output_(&output) {}
+      : source_(&source), output_(&output), format_(source.coordinates) {}
+
+  /// Of the numbers that follow; at first that of the coordinates.
+  void set_format(NumberFormat format) { format_ = format; }
 
   /// The three numbers that begin at `offset`: each that differs between `from` and `to` is
   /// written anew, each other keeps its bytes.
@@ -29,11 +33,15 @@ class TriplePatcher {
   void replace(std::uint64_t offset, const Vec3& from, const Vec3& to);
   void replace(std::uint64_t offset, const Vec3& to);  ///< all three
 
+  /// A single number of so many bytes that begins at `offset`, in a format of its own.
+  void replace_number(std::uint64_t offset, std::size_t n_bytes, NumberFormat format, double value);
+
   void finish() { copy_until(source_->file.size); }
 
  private:
   void copy_until(std::uint64_t offset);
   void copy_space();
+  bool is_comment(char c) const;
   void skip_number();
   void write_number(double value);
   template <typename T>
@@ -41,6 +49,7 @@ class TriplePatcher {
 
   const MeshSource* source_;
   OutputFile* output_;
+  NumberFormat format_;
   std::uint64_t position_ = 0;  ///< everything before it is written
 };
 
@@ -70,7 +79,9 @@ void patch_moved_nodes(const Mesh& mesh, OutputFile& output, Replace replace) {
 
 std::string shortest(double value);  ///< decimals that read back exactly
 
-/// The number that the source's format holds for a value: nearest float32, or the value itself.
+/// The number that a format, or the source's own, holds for a value: nearest float32, or the value
+/// itself.
+double as_stored(NumberFormat format, double value);
 double as_stored(const MeshSource& source, double value);
 
 }  // namespace roughmesh::detail

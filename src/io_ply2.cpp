@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // PLY2: two counts, positions, faces by their corners; text in any arrangement of lines.
 #include <array>
-#include <numeric>
 
 #include <fmt/format.h>
 
 #include "file_formats.hpp"
 #include "scanner.hpp"
+#include "surface_files.hpp"
 
 namespace roughmesh::detail {
 namespace {
@@ -22,33 +22,23 @@ void read_positions(Scanner& scanner, std::size_t n, Mesh& mesh, MeshSource& sou
     const double z = scanner.text_real();
     mesh.nodes.emplace_back(x, y, z);
   }
-  mesh.node_tags.resize(n);
-  std::iota(mesh.node_tags.begin(), mesh.node_tags.end(), Tag{1});
+  number_nodes(mesh);
 }
 
-void read_face(Scanner& scanner, Tag number, Index n_nodes, std::array<ElementBlock, 2>& blocks) {
+void read_face(Scanner& scanner, Tag number, Index n_nodes, BlockBuilder& blocks) {
   const Tag n_corners = scanner.text_integer();
-  if (n_corners != 3 && n_corners != 4)
-    scanner.fail(fmt::format("a face with {} corners; split it into triangles", n_corners));
-  ElementBlock& block = blocks[n_corners == 4];
-  block.tags.push_back(number);
-  for (Tag k = 0; k < n_corners; ++k) {
-    const Tag node = scanner.text_integer();
-    if (node < 0 || node >= n_nodes)
-      scanner.fail(
-          fmt::format("node {} does not exist: they are numbered 0 to {}", node, n_nodes - 1));
-    block.nodes.push_back(static_cast<Index>(node));
-  }
+  check_face_size(scanner, n_corners);
+  std::array<Index, 4> corners{};
+  for (Tag k = 0; k < n_corners; ++k)
+    corners[static_cast<std::size_t>(k)] = checked_node(scanner, scanner.text_integer(), n_nodes);
+  blocks.add_face(number, {corners.data(), static_cast<std::size_t>(n_corners)});
 }
 
 void read_faces(Scanner& scanner, std::size_t n, Mesh& mesh) {
-  std::array<ElementBlock, 2> blocks;
-  blocks[0].type = {ElementShape::triangle, 1, 3};
-  blocks[1].type = {ElementShape::quadrangle, 1, 4};
+  BlockBuilder blocks;
   for (std::size_t i = 0; i < n; ++i)
     read_face(scanner, static_cast<Tag>(i) + 1, mesh.n_nodes(), blocks);
-  for (ElementBlock& block : blocks)
-    if (block.size() > 0) mesh.blocks.push_back(std::move(block));
+  mesh.blocks = blocks.take();
 }
 
 Mesh read_ply2(FileBytes file) {

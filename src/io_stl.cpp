@@ -1,23 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // STL: loose triangles with a normal each. Corners at equal positions become one node.
+#include "io_stl.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 #include <fmt/format.h>
 
-#include "file_formats.hpp"
-#include "io_patch.hpp"
+#include "coincident.hpp"
 #include "scanner.hpp"
-#include "text.hpp"
+#include "surface_files.hpp"
 
 namespace roughmesh::detail {
 namespace {
-
-constexpr std::size_t header_bytes = 80;
-constexpr std::size_t facet_bytes = 50;  // twelve float32 and two bytes of attributes
-constexpr ElementType triangle{ElementShape::triangle, 1, 3};
 
 // Triangles of a file before their corners are glued.
 struct Soup {
@@ -25,29 +21,8 @@ struct Soup {
   std::vector<StlFacet> facets;
 };
 
-bool comes_before(const Vec3& a, const Vec3& b) {
-  return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
-}
-
-// Numbers the distinct positions by first appearance. Comparison as numbers makes 0 and -0 equal,
-// and sorting has no worst case that a file could be made for.
-std::vector<Index> glue(const std::vector<Vec3>& corners) {
-  std::vector<Index> order(corners.size());
-  std::iota(order.begin(), order.end(), Index{0});
-  std::sort(order.begin(), order.end(), [&](Index a, Index b) {
-    if (comes_before(corners[a], corners[b])) return true;
-    return !comes_before(corners[b], corners[a]) && a < b;
-  });
-  std::vector<Index> first(corners.size());  // corner that stands for all at its position
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const bool is_new = i == 0 || corners[order[i]] != corners[order[i - 1]];
-    first[order[i]] = is_new ? order[i] : first[order[i - 1]];
-  }
-  return first;
-}
-
 void add_nodes(Mesh& mesh, Soup& soup) {
-  const std::vector<Index> first = glue(soup.corners);
+  const std::vector<Index> first = first_at_each_position(soup.corners);
   std::vector<Index> node_of_corner(first.size());
   for (std::size_t c = 0; c < first.size(); ++c) {
     const bool is_new = first[c] == static_cast<Index>(c);
@@ -55,8 +30,7 @@ void add_nodes(Mesh& mesh, Soup& soup) {
     if (is_new) mesh.nodes.push_back(soup.corners[c]);
     soup.facets[c / 3].nodes[c % 3] = node_of_corner[c];
   }
-  mesh.node_tags.resize(mesh.nodes.size());
-  std::iota(mesh.node_tags.begin(), mesh.node_tags.end(), Tag{1});
+  number_nodes(mesh);
 }
 
 void add_facets(ElementBlock& block, const Soup& soup, std::size_t begin, std::size_t end) {
@@ -77,7 +51,7 @@ void attach_source(Mesh& mesh, FileBytes file, Soup soup, NumberFormat format) {
 
 std::size_t n_binary_facets(std::string_view bytes) {
   std::uint32_t n = 0;
-  std::memcpy(&n, bytes.data() + header_bytes, sizeof n);
+  std::memcpy(&n, bytes.data() + stl_header_bytes, sizeof n);
   return std::endian::native == std::endian::big ? reverse_bytes(n) : n;
 }
 
@@ -105,20 +79,13 @@ Soup binary_soup(const FileBytes& file, std::size_t n) {
   soup.corners.reserve(3 * n);
   for (std::size_t f = 0; f < n; ++f) {
     StlFacet& facet = soup.facets[f];
-    facet.normal = header_bytes + sizeof(std::uint32_t) + facet_bytes * f;
+    facet.normal = stl_header_bytes + sizeof(std::uint32_t) + stl_facet_bytes * f;
     for (std::size_t k = 0; k < 3; ++k) {
       facet.vertices[k] = facet.normal + 3 * sizeof(float) * (k + 1);
       soup.corners.push_back(binary_corner(file, facet.vertices[k]));
     }
   }
   return soup;
-}
-
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-
-bool equal_ignoring_case(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](char x, char y) { return lower(x) == lower(y); });
 }
 
 void expect_words(Scanner& scanner, std::initializer_list<std::string_view> words) {
@@ -184,7 +151,7 @@ void add_solids(Mesh& mesh, const Soup& soup, const std::vector<Solid>& solids) 
     const Solid& solid = solids[i];
     const Tag number = static_cast<Tag>(i) + 1;
     ElementBlock& block = mesh.blocks.emplace_back();
-    block.type = triangle;
+    block.type = triangle_type;
     block.entity = number;
     add_facets(block, soup, solid.begin, solid.end);
     if (solid.name.empty()) continue;
@@ -194,23 +161,9 @@ void add_solids(Mesh& mesh, const Soup& soup, const std::vector<Solid>& solids) 
   }
 }
 
-// Zero for a triangle without area.
-Vec3 normal_of_stored(const MeshSource& source, const std::array<Vec3, 3>& corners) {
-  std::array<Vec3, 3> x;
-  for (std::size_t k = 0; k < 3; ++k)
-    x[k] = corners[k].unaryExpr([&](double value) { return as_stored(source, value); });
-  const Vec3 a = x[1] - x[0], b = x[2] - x[0];
-  // Scaled first, so that neither tiny nor huge triangles leave the range of doubles.
-  const double scale = std::max(a.lpNorm<Eigen::Infinity>(), b.lpNorm<Eigen::Infinity>());
-  const Vec3 area = (a / scale).cross(b / scale);
-  const double length = area.norm();
-  if (!(length > 0 && std::isfinite(length))) return Vec3::Zero();
-  return area / length + Vec3::Zero();  // no -0
-}
-
 bool is_binary_stl(std::string_view bytes) {
-  const std::size_t start = header_bytes + sizeof(std::uint32_t);
-  return bytes.size() >= start && bytes.size() == start + facet_bytes * n_binary_facets(bytes);
+  const std::size_t start = stl_header_bytes + sizeof(std::uint32_t);
+  return bytes.size() >= start && bytes.size() == start + stl_facet_bytes * n_binary_facets(bytes);
 }
 
 bool is_text_stl(std::string_view bytes) {
@@ -230,7 +183,7 @@ Mesh read_binary_stl(FileBytes file) {
   Mesh mesh;
   add_nodes(mesh, soup);
   mesh.blocks.resize(1);
-  mesh.blocks[0].type = triangle;
+  mesh.blocks[0].type = triangle_type;
   mesh.blocks[0].entity = 1;
   add_facets(mesh.blocks[0], soup, 0, n);
   attach_source(mesh, std::move(file), std::move(soup), NumberFormat::float32);
@@ -253,24 +206,6 @@ Mesh read_text_stl(FileBytes file) {
   return mesh;
 }
 
-void write_patched_stl(const Mesh& mesh, OutputFile& output) {
-  const MeshSource& source = *mesh.source;
-  TriplePatcher patcher(source, output);
-  for (const StlFacet& facet : source.facets) {
-    std::array<Vec3, 3> corners;
-    bool has_moved = false;
-    for (std::size_t k = 0; k < 3; ++k) {
-      corners[k] = mesh.nodes[facet.nodes[k]];
-      has_moved |= !same_bits(corners[k], source.positions[facet.nodes[k]]);
-    }
-    if (!has_moved) continue;
-    patcher.replace(facet.normal, normal_of_stored(source, corners));
-    for (std::size_t k = 0; k < 3; ++k)
-      patcher.replace(facet.vertices[k], source.positions[facet.nodes[k]], corners[k]);
-  }
-  patcher.finish();
-}
-
 Mesh read_stl(FileBytes file) {
   return is_binary_stl(file.view()) ? read_binary_stl(std::move(file))
                                     : read_text_stl(std::move(file));
@@ -285,6 +220,19 @@ const FileFormat stl_format = {
     .recognizes = [](std::string_view bytes,
                      std::string_view) { return is_binary_stl(bytes) || is_text_stl(bytes); },
     .read = read_stl,
-    .write_patched = write_patched_stl};
+    .write_patched = write_patched_stl,
+    .check_new = check_stl,
+    .write_new = write_new_stl,
+    .holds = {.quadrangles = false,
+              .full_precision = false,
+              .least_dimension = 2,
+              .most_dimension = 2},
+    .text_holds = Holds{.groups = true,
+                        .group_names = true,
+                        .group_numbers = false,
+                        .quadrangles = false,
+                        .least_dimension = 2,
+                        .most_dimension = 2},
+    .encodings = {Encoding::binary, Encoding::text}};
 
 }  // namespace roughmesh::detail

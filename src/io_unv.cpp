@@ -276,6 +276,6 @@ const FileFormat unv_format = {.format = MeshFormat::unv,
                                          .several_groups = true,
                                          .group_names = true,
                                          .tags = true,
-                                         .points = false}};
+                                         .least_dimension = 1}};
 
 }  // namespace roughmesh::detail

@@ -1,41 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // VTU (VTK XML unstructured grid), for looking at results: arrays as raw bytes behind the XML.
 // Format: VTK File Formats, https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html
-#include <algorithm>
-#include <array>
 #include <bit>
 
 #include <fmt/format.h>
 
 #include "file_formats.hpp"
+#include "vtk_cells.hpp"
 
 namespace roughmesh::detail {
 namespace {
-
-// Node order of VTK's linear wedge: its first triangle faces outward, that of Gmsh's prism inward.
-constexpr std::array<int, 6> wedge_order = {0, 2, 1, 3, 5, 4};
-
-std::uint8_t vtk_cell_type(ElementShape shape) {
-  switch (shape) {
-    case ElementShape::point:
-      return 1;
-    case ElementShape::line:
-      return 3;
-    case ElementShape::triangle:
-      return 5;
-    case ElementShape::quadrangle:
-      return 9;
-    case ElementShape::tetrahedron:
-      return 10;
-    case ElementShape::hexahedron:
-      return 12;
-    case ElementShape::prism:
-      return 13;
-    case ElementShape::pyramid:
-      return 14;
-  }
-  return 0;
-}
 
 std::string escaped(std::string_view text) {
   std::string result;
@@ -134,13 +108,12 @@ void write_doubles(OutputFile& output, const double* values, std::size_t n) {
 
 void write_connectivity(OutputFile& output, const Mesh& mesh, std::uint64_t n_corners) {
   write_value<std::uint64_t>(output, n_corners * sizeof(std::int64_t));
-  for (const ElementBlock& block : mesh.blocks)
-    for (Index i = 0; i < block.size(); ++i) {
-      const auto element = block.element(i);
-      for (std::size_t k = 0; k < element.size(); ++k)
-        write_value<std::int64_t>(
-            output, block.type.shape == ElementShape::prism ? element[wedge_order[k]] : element[k]);
-    }
+  for (const ElementBlock& block : mesh.blocks) {
+    const VtkCell& cell = *vtk_cell(block.type);
+    for (Index i = 0; i < block.size(); ++i)
+      for (const int place : cell.places)
+        write_value<std::int64_t>(output, block.element(i)[place]);
+  }
 }
 
 void write_arrays(OutputFile& output, const Mesh& mesh, const Sizes& n) {
@@ -152,17 +125,13 @@ void write_arrays(OutputFile& output, const Mesh& mesh, const Sizes& n) {
   write_cells<std::int64_t>(output, mesh, cell_bytes,
                             [&](const ElementBlock& block) { return end += block.type.n_nodes; });
   write_cells<std::uint8_t>(output, mesh, n.n_cells, [](const ElementBlock& block) {
-    return vtk_cell_type(block.type.shape);
+    return static_cast<std::uint8_t>(vtk_cell(block.type)->number);
   });
   write_cells<std::int64_t>(output, mesh, cell_bytes,
                             [](const ElementBlock& block) { return block.entity; });
   write_cells<std::int64_t>(output, mesh, cell_bytes, [](const ElementBlock& block) {
     return block.physical_groups.empty() ? 0 : block.physical_groups.front();
   });
-}
-
-void check_vtu(const Mesh& mesh, const std::filesystem::path& path) {
-  check_elements(mesh, path, 1, false);
 }
 
 void write_vtu(const Mesh& mesh, const WriteOptions& options, OutputFile& output) {
@@ -178,7 +147,7 @@ void write_vtu(const Mesh& mesh, const WriteOptions& options, OutputFile& output
 
 const FileFormat vtu_format = {.format = MeshFormat::vtu,
                                .extensions = {".vtu"},
-                               .check_new = check_vtu,
+                               .check_new = check_for_vtk,
                                .write_new = write_vtu,
                                .holds = {.point_fields = true},
                                .encodings = {Encoding::binary}};

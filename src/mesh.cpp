@@ -14,22 +14,41 @@ struct ShapeFacts {
   int dimension;
   int n_corners;
   std::vector<std::vector<int>> faces;
+  std::vector<std::array<int, 2>> edges;
 };
 
-// Corner numbering of Gmsh; faces seen from outside run counter-clockwise.
+// Numbering of Gmsh ("Node ordering" in its manual); faces seen from outside run counter-clockwise.
 const ShapeFacts& facts(ElementShape shape) {
   static const std::array<ShapeFacts, 8> table = {{
-      {"point", 0, 1, {}},
-      {"line", 1, 2, {}},
-      {"triangle", 2, 3, {}},
-      {"quadrangle", 2, 4, {}},
-      {"tetrahedron", 3, 4, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}},
+      {"point", 0, 1, {}, {}},
+      {"line", 1, 2, {}, {{0, 1}}},
+      {"triangle", 2, 3, {{0, 1}, {1, 2}, {2, 0}}, {{0, 1}, {1, 2}, {2, 0}}},
+      {"quadrangle",
+       2,
+       4,
+       {{0, 1}, {1, 2}, {2, 3}, {3, 0}},
+       {{0, 1}, {1, 2}, {2, 3}, {3, 0}}},
+      {"tetrahedron",
+       3,
+       4,
+       {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}},
+       {{0, 1}, {1, 2}, {2, 0}, {3, 0}, {2, 3}, {1, 3}}},
       {"hexahedron",
        3,
        8,
-       {{0, 3, 2, 1}, {0, 1, 5, 4}, {0, 4, 7, 3}, {1, 2, 6, 5}, {2, 3, 7, 6}, {4, 5, 6, 7}}},
-      {"prism", 3, 6, {{0, 2, 1}, {3, 4, 5}, {0, 1, 4, 3}, {0, 3, 5, 2}, {1, 2, 5, 4}}},
-      {"pyramid", 3, 5, {{0, 3, 2, 1}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}},
+       {{0, 3, 2, 1}, {0, 1, 5, 4}, {0, 4, 7, 3}, {1, 2, 6, 5}, {2, 3, 7, 6}, {4, 5, 6, 7}},
+       {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 5}, {2, 3}, {2, 6}, {3, 7}, {4, 5}, {4, 7}, {5, 6},
+        {6, 7}}},
+      {"prism",
+       3,
+       6,
+       {{0, 2, 1}, {3, 4, 5}, {0, 1, 4, 3}, {0, 3, 5, 2}, {1, 2, 5, 4}},
+       {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 4}, {2, 5}, {3, 4}, {3, 5}, {4, 5}}},
+      {"pyramid",
+       3,
+       5,
+       {{0, 3, 2, 1}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}},
+       {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 4}, {2, 3}, {2, 4}, {3, 4}}},
   }};
   return table[static_cast<std::size_t>(shape)];
 }
@@ -46,6 +65,8 @@ std::string name(const ElementType& type) {
 }
 
 std::span<const std::vector<int>> local_faces(ElementShape shape) { return facts(shape).faces; }
+
+std::span<const std::array<int, 2>> local_edges(ElementShape shape) { return facts(shape).edges; }
 
 std::string name(MeshFormat format) {
   static constexpr std::array names = {"none", "msh2",  "msh4", "stl",    "ply",

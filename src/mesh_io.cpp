@@ -2,6 +2,7 @@
 #include "roughmesh/mesh_io.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <new>
 #include <system_error>
@@ -70,13 +71,26 @@ void require_encoding(const FileFormat& format, Encoding encoding,
                                encoding == Encoding::text ? "text" : "binary"));
 }
 
+Encoding source_encoding(const Mesh& mesh) {
+  return mesh.source->coordinates == detail::NumberFormat::text ? Encoding::text : Encoding::binary;
+}
+
+// That of the source where the format stays.
+Encoding usual_encoding(const Mesh& mesh, const FileFormat& format) {
+  if (mesh.source != nullptr && mesh.format == format.format) {
+    const auto& encodings = format.encodings;
+    if (std::count(encodings.begin(), encodings.end(), source_encoding(mesh)) > 0)
+      return source_encoding(mesh);
+  }
+  return format.encodings.front();
+}
+
 // Refuses what cannot be written whatever the positions are.
 WritePlan make_plan(const Mesh& mesh, const std::filesystem::path& path,
                     const WriteOptions& options) {
   WritePlan plan{&choose_format(mesh, path, options), false, options};
   if (is_as_read(mesh) && plan.format->format == mesh.format) {
-    const bool is_text = mesh.source->coordinates == detail::NumberFormat::text;
-    const Encoding encoding = is_text ? Encoding::text : Encoding::binary;
+    const Encoding encoding = source_encoding(mesh);
     plan.copies_source = options.encoding.value_or(encoding) == encoding;
   }
   if (plan.copies_source) return plan;
@@ -84,7 +98,7 @@ WritePlan make_plan(const Mesh& mesh, const std::filesystem::path& path,
     throw InputError(fmt::format("{}: {} is only written from a mesh that was read as {}; use .msh",
                                  path.string(), name(plan.format->format),
                                  name(plan.format->format)));
-  plan.options.encoding = options.encoding.value_or(plan.format->encodings.front());
+  plan.options.encoding = options.encoding.value_or(usual_encoding(mesh, *plan.format));
   require_encoding(*plan.format, *plan.options.encoding, path);
   detail::check_arrays(mesh, path);
   plan.format->check_new(mesh, path);
@@ -118,6 +132,26 @@ bool has_element_in_several_groups(const Mesh& mesh) {
   return std::any_of(mesh.blocks.begin(), mesh.blocks.end(), [](const ElementBlock& block) {
     return block.size() > 0 && block.physical_groups.size() > 1;
   });
+}
+
+std::int64_t n_quadrangles(const Mesh& mesh) {
+  std::int64_t n = 0;
+  for (const ElementBlock& block : mesh.blocks)
+    if (block.type.shape == ElementShape::quadrangle) n += block.size();
+  return n;
+}
+
+void add_lost_elements(const Mesh& mesh, const detail::Holds& holds,
+                       std::vector<std::string>& losses) {
+  constexpr std::array things = {"points", "lines", "surface elements", "volume elements"};
+  for (int dim = 0; dim <= 3; ++dim) {
+    const std::int64_t n = n_elements(mesh, dim);
+    if (n > 0 && (dim < holds.least_dimension || dim > holds.most_dimension))
+      losses.push_back(fmt::format("{} {}", n, things[static_cast<std::size_t>(dim)]));
+  }
+  const std::int64_t n = n_quadrangles(mesh);
+  if (n > 0 && !holds.quadrangles)
+    losses.push_back(fmt::format("{} quadrangles, which become two triangles each", n));
 }
 
 // Numbers that are not 1, 2, 3, ... in the order of the arrays.
@@ -156,20 +190,32 @@ std::vector<std::string> conversion_losses(const Mesh& mesh, const std::filesyst
   const WritePlan plan = make_plan(mesh, path, options);
   std::vector<std::string> losses;
   if (plan.copies_source) return losses;
-  const detail::Holds& holds = plan.format->holds;
+  const bool is_text = plan.options.encoding == Encoding::text;
+  const detail::Holds& holds =
+      is_text && plan.format->text_holds ? *plan.format->text_holds : plan.format->holds;
+  add_lost_elements(mesh, holds, losses);
   if (!mesh.groups.empty() && !holds.groups)
     losses.push_back(fmt::format("{} physical groups", mesh.groups.size()));
   if (n_named(mesh) > 0 && holds.groups && !holds.group_names)
     losses.push_back(fmt::format("names of {} physical groups", n_named(mesh)));
+  if (!mesh.groups.empty() && holds.groups && !holds.group_numbers)
+    losses.push_back(fmt::format("numbers of {} physical groups", mesh.groups.size()));
   if (has_element_in_several_groups(mesh) && holds.groups && !holds.several_groups)
     losses.emplace_back("all but the first group of elements in several");
   if (!mesh.periodic_links.empty() && !holds.periodic_links)
     losses.push_back(fmt::format("{} periodic links", mesh.periodic_links.size()));
-  if (n_elements(mesh, 0) > 0 && !holds.points)
-    losses.push_back(fmt::format("{} point elements", n_elements(mesh, 0)));
   if (has_own_numbers(mesh) && !holds.tags) losses.emplace_back("numbers of nodes and elements");
+  if (plan.format->losses != nullptr)
+    for (std::string& loss : plan.format->losses(mesh)) losses.push_back(std::move(loss));
+  if (!holds.full_precision) losses.emplace_back("digits of positions beyond float32");
   if (mesh.source != nullptr) losses.emplace_back("comments and data of the input file");
   return losses;
+}
+
+bool carries_fields(const Mesh& mesh, const std::filesystem::path& path,
+                    const WriteOptions& options) {
+  const WritePlan plan = make_plan(mesh, path, options);
+  return !plan.copies_source && plan.format->holds.point_fields;
 }
 
 void write_text(const std::string& text, const std::filesystem::path& path) {

@@ -36,6 +36,14 @@ struct StlFacet {
   std::array<Index, 3> nodes{};             ///< of the mesh, one for each corner
 };
 
+/// A normal or tangent at a node, as a file states it.
+struct NodeVector {
+  std::uint64_t offset = 0;  ///< of its first number
+  Index node = 0;
+  bool is_normal = true;  ///< of all faces at the node; else a tangent or the normal of one face
+  Vec3 value = Vec3::Zero();
+};
+
 /// Of everything in a mesh but the positions of its nodes.
 std::uint64_t topology_hash(const Mesh& mesh);
 
@@ -51,6 +59,10 @@ class MeshSource {
   std::vector<std::uint64_t> offsets;    ///< n offsets of first coordinates, or of the
                                          ///< records that hold them, ascending; not for STL
   std::vector<detail::StlFacet> facets;  ///< STL only, ascending
+  int n_coordinates = 3;  ///< of each node and vector; 2 for a plane mesh, whose z is 0
+  char comment = '\0';    ///< begins a comment that ends with its line; '\0' for none
+  std::vector<detail::NodeVector> vectors;  ///< normals and tangents, ascending
+  detail::NumberFormat vector_numbers = detail::NumberFormat::text;
 };
 
 namespace detail {

@@ -15,12 +15,12 @@ inline std::string place(const Vec3& x) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", x.x(), x.y(), x.z());
 }
 
-/// @throws InputError  the element has nodes beside its corners
-inline void require_first_order(const ElementType& type, Tag element) {
-  if (type.order == 1) return;
+/// @throws InputError  the element is of order 3 or more
+inline void require_movable_order(const ElementType& type, Tag element) {
+  if (type.order <= 2) return;
   throw InputError(
-      fmt::format("element {} is a {}: elements of higher order cannot move yet; make the mesh "
-                  "linear by meshing its geometry again with gmsh -order 1",
+      fmt::format("element {} is a {}: only elements of order 1 and 2 can move; mesh the geometry "
+                  "again with gmsh -order 1 or -order 2",
                   element, name(type)));
 }
 

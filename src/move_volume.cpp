@@ -3,24 +3,27 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <numeric>
 
 #include <fmt/format.h>
+
+#include "roughmesh/displace.hpp"
 
 #include "corners.hpp"
 #include "harmonic.hpp"
 #include "messages.hpp"
-#include "surface_faces.hpp"
-#include "volume_faces.hpp"
+#include "second_order.hpp"
+#include "walls.hpp"
 
 namespace roughmesh {
 
 struct VolumeMover::Plan {
   std::vector<Vec3> nodes;
-  std::vector<Index> surface_nodes;
-  std::vector<Index> point_of_node;  // of surface_nodes
-  std::size_t n_points = 0;
+  std::vector<Index> moved_nodes;  // of the surfaces
   std::vector<Index> free_nodes;
-  std::unique_ptr<const detail::HarmonicExtension> extension;  // none without volume elements
+  // None without elements to deform.
+  std::unique_ptr<const detail::HarmonicExtension> extension;
+  std::unique_ptr<const detail::Followers> followers;
   Index n_wall_nodes = 0;
 };
 
@@ -28,100 +31,130 @@ namespace {
 
 using NodeFlags = std::vector<std::uint8_t>;
 
-bool is_volume(const ElementBlock& block) { return dimension(block.type.shape) == 3; }
-
-bool is_face(const ElementBlock& block) { return dimension(block.type.shape) == 2; }
-
-// Marks the nodes of faces that are not part of the surface: they belong to walls, which stay.
-class WallMarker {
- public:
-  WallMarker(const Mesh& mesh, const Surface& surface, std::span<const Index> point_of_node)
-      : lookup_(surface.face_offsets, surface.face_points),
-        point_of_node_(point_of_node),
-        on_wall_(mesh.nodes.size(), 0) {}
-
-  void add(std::span<const Index> corners, std::span<const Index> nodes) {
-    if (is_selected(corners)) return;
-    for (const Index node : nodes) on_wall_[node] = 1;
-  }
-  NodeFlags take() { return std::move(on_wall_); }
-
- private:
-  bool is_selected(std::span<const Index> corners) const {
-    std::array<Index, 4> points{};
-    for (std::size_t k = 0; k < corners.size(); ++k) points[k] = point_of_node_[corners[k]];
-    return lookup_.find({points.data(), corners.size()}) >= 0;
-  }
-
-  detail::FaceLookup lookup_;
-  std::span<const Index> point_of_node_;
-  NodeFlags on_wall_;
-};
-
-NodeFlags wall_nodes(const Mesh& mesh, const Surface& surface,
-                     std::span<const Index> point_of_node) {
-  WallMarker walls(mesh, surface, point_of_node);
-  for (const ElementBlock& block : mesh.blocks) {
-    if (!is_face(block)) continue;
-    const auto n = static_cast<std::size_t>(n_corners(block.type.shape));
-    for (Index e = 0; e < block.size(); ++e) walls.add(block.element(e).first(n), block.element(e));
-  }
-  for (const detail::VolumeFace& face : detail::boundary_faces(mesh))
-    walls.add(face.corners(), face.corners());
-  return walls.take();
+std::span<const Index> corners_of(const ElementBlock& block, Index element) {
+  return block.element(element).first(static_cast<std::size_t>(n_corners(block.type.shape)));
 }
 
-detail::NodeRoles make_roles(const Mesh& mesh, const Surface& surface,
-                             std::vector<Index> point_of_node, const NodeFlags& on_wall,
-                             bool moves_interior) {
-  NodeFlags in_volume(mesh.nodes.size(), 0);
+bool is_cell(const ElementBlock& block, int cell_dimension) {
+  return dimension(block.type.shape) == cell_dimension;
+}
+
+// Sets of nodes that elements join.
+class NodeSets {
+ public:
+  explicit NodeSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
+
+  Index root(Index node) {
+    while (parent_[node] != node) node = parent_[node] = parent_[parent_[node]];
+    return node;
+  }
+  void join(Index a, Index b) { parent_[root(a)] = root(b); }
+
+ private:
+  std::vector<Index> parent_;
+};
+
+// Corners of cells that are joined to a given node without crossing a wall. Beyond walls nothing
+// moves, whatever elements there are.
+NodeFlags reached_corners(const Mesh& mesh, int cell_dimension, const detail::NodeRoles& roles,
+                          const NodeFlags& on_wall) {
+  const auto can_move = [&](Index node) { return roles.given[node] >= 0 || !on_wall[node]; };
+  NodeSets sets(mesh.nodes.size());
+  NodeFlags is_corner(mesh.nodes.size(), 0);
   for (const ElementBlock& block : mesh.blocks)
-    if (moves_interior && is_volume(block))
-      for (const Index node : block.nodes) in_volume[node] = 1;
+    for (Index e = 0; is_cell(block, cell_dimension) && e < block.size(); ++e) {
+      Index first = -1;
+      for (const Index node : corners_of(block, e)) {
+        is_corner[node] = 1;
+        if (!can_move(node)) continue;
+        if (first >= 0) sets.join(node, first);
+        first = node;
+      }
+    }
+  NodeFlags is_reached_set(mesh.nodes.size(), 0);
+  for (Index node = 0; node < mesh.n_nodes(); ++node)
+    if (roles.given[node] >= 0) is_reached_set[sets.root(node)] = 1;
+  for (Index node = 0; node < mesh.n_nodes(); ++node)
+    is_corner[node] = is_corner[node] && can_move(node) && is_reached_set[sets.root(node)];
+  return is_corner;
+}
+
+detail::NodeRoles given_roles(const Mesh& mesh, std::span<const Index> moved_nodes) {
   detail::NodeRoles roles;
   roles.unknown.assign(mesh.nodes.size(), -1);
-  for (std::size_t node = 0; node < mesh.nodes.size(); ++node)
-    if (in_volume[node] && !on_wall[node] && point_of_node[node] < 0)
-      roles.unknown[node] = roles.n_unknown++;
-  roles.given = std::move(point_of_node);
-  roles.n_given = surface.n_points();
+  roles.given.assign(mesh.nodes.size(), -1);
+  for (const Index node : moved_nodes) roles.given[node] = roles.n_given++;
   return roles;
 }
 
-void require_linear_elements(const Mesh& mesh, const detail::NodeRoles& roles) {
+void add_unknowns(const NodeFlags& is_reached, detail::NodeRoles& roles) {
+  for (std::size_t node = 0; node < is_reached.size(); ++node)
+    if (is_reached[node] && roles.given[node] < 0) roles.unknown[node] = roles.n_unknown++;
+}
+
+void require_movable_elements(const Mesh& mesh, const detail::NodeRoles& roles) {
   for (const ElementBlock& block : mesh.blocks) {
-    if (block.type.order == 1) continue;
+    if (block.type.order <= 2) continue;
     for (Index e = 0; e < block.size(); ++e)
       for (const Index node : block.element(e))
         if (roles.unknown[node] >= 0 || roles.given[node] >= 0)
-          detail::require_first_order(block.type, block.tags[e]);
+          detail::require_movable_order(block.type, block.tags[e]);
   }
 }
 
-// A tetrahedron stands for itself, every other shape for its corner tetrahedra.
-std::vector<detail::Tetrahedron> deforming_tetrahedra(const Mesh& mesh,
-                                                      const detail::NodeRoles& roles) {
-  std::vector<detail::Tetrahedron> tetrahedra;
-  for (const ElementBlock& block : mesh.blocks) {
-    auto corners = detail::corner_tetrahedra(block.type.shape);
-    if (block.type.shape == ElementShape::tetrahedron) corners = corners.first(1);
-    for (Index e = 0; e < block.size(); ++e) {
-      const auto nodes = block.element(e);
-      for (const auto& [a, b, c, d] : corners) {
-        const detail::Tetrahedron t = {nodes[a], nodes[b], nodes[c], nodes[d]};
-        if (std::any_of(t.begin(), t.end(), [&](Index node) { return roles.unknown[node] >= 0; }))
-          tetrahedra.push_back(t);
-      }
-    }
+template <class Visit>
+void for_each_simplex(const ElementBlock& block, Index element, Visit&& visit) {
+  const auto nodes = corners_of(block, element);
+  const std::size_t n = nodes.size();
+  if (n == 3) visit(detail::Simplex{nodes[0], nodes[1], nodes[2], -1});
+  if (block.type.shape == ElementShape::quadrangle)
+    for (std::size_t k = 0; k < n; ++k)
+      visit(detail::Simplex{nodes[k], nodes[(k + 1) % n], nodes[(k + n - 1) % n], -1});
+  auto corners = detail::corner_tetrahedra(block.type.shape);
+  if (block.type.shape == ElementShape::tetrahedron) corners = corners.first(1);
+  for (const auto& [a, b, c, d] : corners)
+    visit(detail::Simplex{nodes[a], nodes[b], nodes[c], nodes[d]});
+}
+
+// A triangle or tetrahedron stands for itself, every other shape for the simplices at its corners.
+std::vector<detail::Simplex> deforming_simplices(const Mesh& mesh, int cell_dimension,
+                                                 const detail::NodeRoles& roles) {
+  std::vector<detail::Simplex> simplices;
+  const auto is_unknown = [&](Index node) { return node >= 0 && roles.unknown[node] >= 0; };
+  for (const ElementBlock& block : mesh.blocks)
+    for (Index e = 0; is_cell(block, cell_dimension) && e < block.size(); ++e)
+      for_each_simplex(block, e, [&](const detail::Simplex& simplex) {
+        if (std::any_of(simplex.begin(), simplex.end(), is_unknown)) simplices.push_back(simplex);
+      });
+  return simplices;
+}
+
+detail::Followers make_followers(const Mesh& mesh, int cell_dimension,
+                                 const detail::NodeRoles& roles, const NodeFlags& on_wall) {
+  NodeFlags is_settled = on_wall;
+  for (std::size_t node = 0; node < is_settled.size(); ++node)
+    if (roles.given[node] >= 0 || roles.unknown[node] >= 0) is_settled[node] = 1;
+  return {mesh, cell_dimension, is_settled};
+}
+
+void check_surfaces(const Mesh& mesh, std::span<const Surface> surfaces) {
+  if (surfaces.empty()) throw InputError("no surface to move; give one or more");
+  for (const Surface& surface : surfaces) {
+    if (surface.dimension != surfaces.front().dimension)
+      throw InputError(
+          "rough curves and rough faces in one mesh; choose groups of one dimension");
+    if (!surface.nodes.empty() && surface.nodes.back() >= mesh.n_nodes())
+      throw InputError(fmt::format("a surface with node number {} in a mesh of {} nodes; give "
+                                   "surfaces of this mesh",
+                                   surface.nodes.back(), mesh.n_nodes()));
   }
-  return tetrahedra;
 }
 
 void require_finite(std::span<const Vec3> displacements) {
   for (std::size_t i = 0; i < displacements.size(); ++i)
     if (!displacements[i].allFinite())
       throw InputError(
-          fmt::format("the displacement of surface point {} is not finite; check the heights", i));
+          fmt::format("the displacement of moved node {} is not finite; check the heights", i));
 }
 
 }  // namespace
@@ -130,28 +163,29 @@ std::string_view name(VolumeMethod method) {
   return method == VolumeMethod::harmonic ? "harmonic" : "none";
 }
 
-VolumeMover::VolumeMover(const Mesh& mesh, const Surface& surface, VolumeMethod method) {
+VolumeMover::VolumeMover(const Mesh& mesh, std::span<const Surface> surfaces,
+                         VolumeMethod method) {
+  check_surfaces(mesh, surfaces);
   auto plan = std::make_unique<Plan>();
   plan->nodes = mesh.nodes;
-  plan->surface_nodes = surface.nodes;
-  plan->point_of_node = surface.point_of_node;
-  plan->n_points = surface.points.size();
+  plan->moved_nodes = moved_nodes(surfaces);
+  const NodeFlags on_wall = detail::wall_nodes(mesh, surfaces);
+  for (const Index node : plan->moved_nodes) plan->n_wall_nodes += on_wall[node];
 
-  std::vector<Index> point_of_node(mesh.nodes.size(), -1);
-  for (std::size_t i = 0; i < surface.nodes.size(); ++i)
-    point_of_node[surface.nodes[i]] = surface.point_of_node[i];
-  const NodeFlags on_wall = wall_nodes(mesh, surface, point_of_node);
-  for (const Index node : surface.nodes) plan->n_wall_nodes += on_wall[node];
-
-  const bool moves_interior = method == VolumeMethod::harmonic && n_elements(mesh, 3) > 0;
-  const detail::NodeRoles roles =
-      make_roles(mesh, surface, std::move(point_of_node), on_wall, moves_interior);
-  require_linear_elements(mesh, roles);
+  const int cell_dimension = surfaces.front().dimension + 1;
+  const bool moves_interior =
+      method == VolumeMethod::harmonic && n_elements(mesh, cell_dimension) > 0;
+  detail::NodeRoles roles = given_roles(mesh, plan->moved_nodes);
+  if (moves_interior) add_unknowns(reached_corners(mesh, cell_dimension, roles, on_wall), roles);
+  require_movable_elements(mesh, roles);
   for (Index node = 0; node < mesh.n_nodes(); ++node)
     if (roles.unknown[node] >= 0) plan->free_nodes.push_back(node);
-  if (moves_interior)
+  if (moves_interior) {
     plan->extension = std::make_unique<const detail::HarmonicExtension>(
-        mesh.nodes, deforming_tetrahedra(mesh, roles), roles);
+        mesh.nodes, deforming_simplices(mesh, cell_dimension, roles), roles);
+    plan->followers = std::make_unique<const detail::Followers>(
+        make_followers(mesh, cell_dimension, roles, on_wall));
+  }
   plan_ = std::move(plan);
 }
 
@@ -166,16 +200,21 @@ VolumeMethod VolumeMover::method() const {
 Index VolumeMover::n_wall_nodes() const { return plan_->n_wall_nodes; }
 
 std::vector<Vec3> VolumeMover::move(std::span<const Vec3> displacements) const {
-  if (displacements.size() != plan_->n_points)
-    throw InputError(fmt::format("{} displacements for a surface of {} points; give one per point",
-                                 displacements.size(), plan_->n_points));
+  const Plan& plan = *plan_;
+  if (displacements.size() != plan.moved_nodes.size())
+    throw InputError(fmt::format("{} displacements for {} nodes that move; give one per node",
+                                 displacements.size(), plan.moved_nodes.size()));
   require_finite(displacements);
-  std::vector<Vec3> moved = plan_->nodes;
-  for (std::size_t i = 0; i < plan_->surface_nodes.size(); ++i)
-    moved[plan_->surface_nodes[i]] += displacements[plan_->point_of_node[i]];
-  if (!plan_->extension) return moved;
-  const std::vector<Vec3> interior = plan_->extension->extend(displacements);
-  for (std::size_t i = 0; i < interior.size(); ++i) moved[plan_->free_nodes[i]] += interior[i];
+  std::vector<Vec3> shifts(plan.nodes.size(), Vec3::Zero());
+  for (std::size_t i = 0; i < displacements.size(); ++i)
+    shifts[plan.moved_nodes[i]] = displacements[i];
+  if (plan.extension) {
+    const std::vector<Vec3> interior = plan.extension->extend(displacements);
+    for (std::size_t i = 0; i < interior.size(); ++i) shifts[plan.free_nodes[i]] = interior[i];
+    plan.followers->fill(shifts);
+  }
+  std::vector<Vec3> moved = plan.nodes;
+  for (std::size_t node = 0; node < moved.size(); ++node) moved[node] += shifts[node];
   return moved;
 }
 

@@ -8,7 +8,7 @@
 
 #include "roughmesh/error.hpp"
 
-#include "node_order.hpp"
+#include "serendipity.hpp"
 
 namespace roughmesh::detail {
 namespace {

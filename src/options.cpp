@@ -2,15 +2,18 @@
 #include "roughmesh/options.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <limits>
 #include <numbers>
 #include <sstream>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include "json_numbers.hpp"
 #include "options_json.hpp"
 
 namespace roughmesh {
@@ -34,9 +37,7 @@ json toml_to_json(const toml::node& node, const std::string& source) {
   if (const auto* number = node.as_integer()) return number->get();
   if (const auto* truth = node.as_boolean()) return truth->get();
   if (const auto* number = node.as_floating_point()) {
-    // JSON holds no infinity; the reader of options takes the text.
-    if (std::isinf(number->get()) && number->get() > 0) return "inf";
-    return number->get();
+    return detail::number_to_json(number->get());
   }
   throw InputError(fmt::format("{}: dates and times are no option values", source));
 }
@@ -140,7 +141,7 @@ void check_ensemble(const RoughenOptions& o) {
                     o.realizations));
 }
 
-void check_lengths(const RoughenOptions& o) {
+void check_lengths(const Roughness& o) {
   if (o.length.size() > 3)
     throw InputError(fmt::format("--length: {} numbers; give one, two or three", o.length.size()));
   if (o.angle != 0 && o.length.size() < 2)
@@ -148,9 +149,74 @@ void check_lengths(const RoughenOptions& o) {
         fmt::format("--angle: {:g}; turns the axes of anisotropic lengths, give --length "
                     "L,LY,LZ",
                     o.angle));
-  if (o.length.size() > 1 && o.distance != DistanceKind::euclidean)
-    throw InputError(fmt::format(
-        "--length: {} numbers; anisotropic lengths need --distance euclidean", o.length.size()));
+  const DistanceKind distance = o.distance.value_or(DistanceKind::euclidean);
+  if (o.length.size() > 1 &&
+      (distance == DistanceKind::great_circle || distance == DistanceKind::curve))
+    throw InputError(fmt::format("--length: {} numbers; anisotropic lengths do not go with "
+                                 "--distance {}",
+                                 o.length.size(), name(distance)));
+}
+
+void check_period(const Roughness& o) {
+  if (o.period.empty()) return;
+  const bool is_used = !o.distance || o.distance == DistanceKind::periodic ||
+                       o.distance == DistanceKind::minimum_image;
+  if (o.period.size() != 3)
+    throw InputError(fmt::format("--period: {} numbers; give LX,LY,LZ with 0 for an axis without",
+                                 o.period.size()));
+  if (!is_used)
+    throw InputError(fmt::format("--period: goes with --distance periodic or minimum-image, not {}",
+                                 name(*o.distance)));
+}
+
+void check_roughness(const Roughness& o) {
+  if (o.rms == 0)
+    throw InputError("--rms: missing or 0; give the rms roughness, a positive number");
+  require(std::isfinite(o.rms) && o.rms > 0, "--rms", o.rms, "a positive number");
+  require(o.edge_angle > 0 && o.edge_angle <= 180, "--edge-angle", o.edge_angle,
+          "above 0 and at most 180 degrees");
+  require(std::isfinite(o.angle), "--angle", o.angle, "a finite number of degrees");
+  check_lengths(o);
+  check_period(o);
+  mask_options(o);
+  // Throws for a parameter that is missing, foreign to the family or out of range.
+  Autocorrelation{autocorrelation_options(o)};
+}
+
+/// Two fields drawn from the same random numbers would resemble each other in no useful way.
+void check_seeds(const std::vector<Roughness>& surfaces) {
+  for (std::size_t j = 0; j < surfaces.size(); ++j)
+    for (std::size_t i = 0; i < j; ++i)
+      if (surfaces[i].seed == surfaces[j].seed && !same_field(surfaces[i], surfaces[j]))
+        throw InputError(
+            fmt::format("surfaces {} and {} have the same seed {} but different autocorrelation; "
+                        "give one of them another seed",
+                        i + 1, j + 1, surfaces[i].seed));
+}
+
+void check_surfaces(const std::vector<Roughness>& surfaces) {
+  if (surfaces.empty()) throw InputError("surface: an empty list; describe at least one surface");
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    try {
+      check_roughness(surfaces[i]);
+    } catch (const InputError& error) {
+      if (surfaces.size() == 1) throw;
+      throw InputError(fmt::format("surface {}: {}", i + 1, error.what()));
+    }
+    if (surfaces.size() > 1 && surfaces[i].group.empty())
+      throw InputError(fmt::format("surface {}: no group; name one where there are several surfaces",
+                                   i + 1));
+  }
+  check_seeds(surfaces);
+}
+
+void check_files(const RoughenOptions& o) {
+  if (o.ascii && o.binary) throw InputError("--ascii: not together with --binary; give one of them");
+  if (o.mesh_size)
+    require(std::isfinite(*o.mesh_size) && *o.mesh_size > 0, "--mesh-size", *o.mesh_size,
+            "a positive number");
+  require(std::isfinite(o.timeout) && o.timeout > 0, "--timeout", o.timeout,
+          "a positive number of seconds");
 }
 
 }  // namespace
@@ -160,21 +226,14 @@ std::string_view name(VolumeChoice choice) {
 }
 
 void check_options(const RoughenOptions& o) {
-  if (o.rms == 0)
-    throw InputError("--rms: missing or 0; give the rms roughness, a positive number");
-  require(std::isfinite(o.rms) && o.rms > 0, "--rms", o.rms, "a positive number");
   require(std::isfinite(o.tolerance) && o.tolerance > 0, "--tolerance", o.tolerance,
           "a positive number");
-  require(o.edge_angle > 0 && o.edge_angle <= 180, "--edge-angle", o.edge_angle,
-          "above 0 and at most 180 degrees");
-  require(std::isfinite(o.angle), "--angle", o.angle, "a finite number of degrees");
   require(o.threads >= 0 && o.threads <= 4096, "--threads", o.threads, "from 0 to 4096");
   check_ensemble(o);
   check_report(o);
-  check_lengths(o);
+  check_files(o);
   method_from_name(o.method);
-  // Throws for a parameter that is missing, foreign to the family or out of range.
-  Autocorrelation{autocorrelation_options(o)};
+  check_surfaces(o.surfaces);
 }
 
 RoughenOptions read_job(const std::filesystem::path& path) {
@@ -202,7 +261,7 @@ std::string report_path(const RoughenOptions& options) {
   return (folder / (file.stem().string() + ".report.json")).string();
 }
 
-AutocorrelationOptions autocorrelation_options(const RoughenOptions& o) {
+AutocorrelationOptions autocorrelation_options(const Roughness& o) {
   AutocorrelationOptions result{.family = o.acf,
                                 .length = std::nullopt,
                                 .length_definition = o.length_definition,
@@ -210,7 +269,11 @@ AutocorrelationOptions autocorrelation_options(const RoughenOptions& o) {
                                 .hurst = o.hurst,
                                 .rolloff = o.rolloff,
                                 .power = o.power,
-                                .alpha = o.alpha};
+                                .alpha = o.alpha,
+                                .table = {}};
+  if (o.acf == Family::table && o.table.empty())
+    throw InputError("--table: missing; give the file with the two columns of --acf table");
+  if (!o.table.empty()) result.table = read_correlation_table(o.table);
   // Anisotropic lengths scale the distance; rho belongs to the first finite one. A single length is
   // taken as it is, so that the family can refuse it by name.
   if (!o.length.empty()) result.length = o.length.front();
@@ -223,13 +286,75 @@ AutocorrelationOptions autocorrelation_options(const RoughenOptions& o) {
   return result;
 }
 
-SurfaceOptions surface_options(const RoughenOptions& o) {
+SurfaceOptions surface_options(const Roughness& o) {
   return {
       .groups = o.group, .flip = o.flip, .sharp_angle = o.edge_angle / 180.0 * std::numbers::pi};
 }
 
 FieldOptions field_options(const RoughenOptions& o) {
   return {.method = method_from_name(o.method), .tolerance = o.tolerance};
+}
+
+namespace {
+
+Fade parse_fade(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  const std::string number = text.substr(0, colon);
+  Fade fade{.width = 0, .group = colon == text.npos ? "" : text.substr(colon + 1)};
+  const char* const end = number.data() + number.size();
+  const auto [stop, error] = std::from_chars(number.data(), end, fade.width);
+  if (error != std::errc() || stop != end || !(fade.width > 0) || !std::isfinite(fade.width) ||
+      (colon != text.npos && fade.group.empty()))
+    throw InputError(
+        fmt::format("--fade: {}; must be a positive WIDTH or WIDTH:GROUP, such as 0.5:inlet", text));
+  return fade;
+}
+
+}  // namespace
+
+MaskOptions mask_options(const Roughness& o) {
+  MaskOptions options;
+  options.fixed = o.fixed;
+  for (const std::string& text : o.fade) options.fade.push_back(parse_fade(text));
+  for (const Mask& mask : o.mask) {
+    if (const auto* box = std::get_if<BoxMask>(&mask)) options.boxes.push_back(*box);
+    if (const auto* sphere = std::get_if<SphereMask>(&mask)) options.spheres.push_back(*sphere);
+    if (const auto* formula = std::get_if<FormulaMask>(&mask)) options.formulas.push_back(*formula);
+  }
+  return options;
+}
+
+WriteOptions write_options(const RoughenOptions& o) {
+  WriteOptions options{.format = o.format};
+  if (o.ascii) options.encoding = Encoding::text;
+  if (o.binary) options.encoding = Encoding::binary;
+  return options;
+}
+
+GeometryOptions geometry_options(const RoughenOptions& o) {
+  const Roughness& first = o.surfaces.front();
+  const bool has_length = !first.length.empty() || first.rolloff || !first.table.empty();
+  // A script knows its own sizes.
+  const bool is_script = std::filesystem::path(o.input).extension() == ".geo";
+  if (!o.mesh_size && !is_script && !has_length)
+    throw InputError("--mesh-size: missing; CAD files need it, or --length, of which it is 1 / 2.5");
+  GeometryOptions options;
+  options.gmsh = o.gmsh;
+  options.timeout = o.timeout;
+  options.trust_scripts = o.trust_scripts;
+  if (o.mesh_size)
+    options.mesh_size = *o.mesh_size;
+  else if (!is_script)
+    options.mesh_size = Autocorrelation(autocorrelation_options(first)).length() / 2.5;
+  return options;
+}
+
+bool same_field(const Roughness& a, const Roughness& b) {
+  const auto key = [](const Roughness& o) {
+    return std::tie(o.seed, o.length, o.acf, o.length_definition, o.nu, o.hurst, o.rolloff, o.power,
+                    o.alpha, o.table, o.angle, o.distance, o.period);
+  };
+  return key(a) == key(b);
 }
 
 }  // namespace roughmesh

@@ -8,6 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "json_numbers.hpp"
+#include "mask_json.hpp"
+
 namespace roughmesh::detail {
 namespace {
 
@@ -19,16 +22,10 @@ struct WrongType {
   std::string expected;
 };
 
-// JSON has no infinity; a streak's length is the string "inf".
-ordered_json number_to_json(double value) {
-  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
-  return value;
-}
-
-double number_from_json(const json& value) {
-  if (value.is_string() && value == "inf") return std::numeric_limits<double>::infinity();
-  if (!value.is_number()) throw WrongType{"a number"};
-  return value.get<double>();
+double require_number(const json& value) {
+  const std::optional<double> number = number_from_json(value);
+  if (!number) throw WrongType{"a number"};
+  return *number;
 }
 
 ordered_json to_json_value(const std::string& value) { return value; }
@@ -45,8 +42,17 @@ ordered_json to_json_value(const std::vector<double>& value) {
   for (const double number : value) list.push_back(number_to_json(number));
   return list;
 }
+ordered_json to_json_value(const std::vector<Mask>& value) {
+  ordered_json list = ordered_json::array();
+  for (const Mask& mask : value) list.push_back(mask_to_json(mask));
+  return list;
+}
 template <class Enum>
 requires std::is_enum_v<Enum> ordered_json to_json_value(Enum value) { return name(value); }
+template <class Enum>
+requires std::is_enum_v<Enum> ordered_json to_json_value(const std::optional<Enum>& value) {
+  return value ? ordered_json(name(*value)) : ordered_json();
+}
 
 void from_json_value(const json& value, std::string& target) {
   if (!value.is_string()) throw WrongType{"a text"};
@@ -68,14 +74,14 @@ void from_json_value(const json& value, std::uint64_t& target) {
   if (!fits) throw WrongType{"a whole number from 0 on"};
   target = value.get<std::uint64_t>();
 }
-void from_json_value(const json& value, double& target) { target = number_from_json(value); }
+void from_json_value(const json& value, double& target) { target = require_number(value); }
 void from_json_value(const json& value, std::optional<double>& target) {
-  target = value.is_null() ? std::nullopt : std::optional(number_from_json(value));
+  target = value.is_null() ? std::nullopt : std::optional(require_number(value));
 }
 void from_json_value(const json& value, std::vector<std::string>& target) {
   target.clear();
   const auto add = [&](const json& item) {
-    if (!item.is_string() && !item.is_number_integer())
+    if (!item.is_string() && !item.is_number())
       throw WrongType{"a list of names or numbers"};
     target.push_back(item.is_string() ? item.get<std::string>() : item.dump());
   };
@@ -84,8 +90,17 @@ void from_json_value(const json& value, std::vector<std::string>& target) {
 }
 void from_json_value(const json& value, std::vector<double>& target) {
   target.clear();
-  if (!value.is_array()) return target.push_back(number_from_json(value));
-  for (const json& item : value) target.push_back(number_from_json(item));
+  if (!value.is_array()) return target.push_back(require_number(value));
+  for (const json& item : value) target.push_back(require_number(item));
+}
+void from_json_value(const json& value, std::vector<Mask>& target) {
+  if (!value.is_array()) throw WrongType{"tables, written [[mask]] in TOML"};
+  target.clear();
+  try {
+    for (const json& table : value) target.push_back(mask_from_json(table));
+  } catch (const WrongMask& wrong) {
+    throw WrongType{wrong.what()};
+  }
 }
 template <class Enum>
 requires std::is_enum_v<Enum>
@@ -101,39 +116,100 @@ void from_json_value(const json& value, Enum& target) {
   throw WrongType{expected};
 }
 
-}  // namespace
-
-ordered_json options_to_json(const RoughenOptions& options) {
-  ordered_json object;
-  for_each_option(options, [&](const OptionText& text, const auto& member) {
-    object[std::string(text.name)] = to_json_value(member);
-  });
-  return object;
+template <class Enum>
+requires std::is_enum_v<Enum>
+void from_json_value(const json& value, std::optional<Enum>& target) {
+  if (value.is_null()) return target.reset();
+  from_json_value(value, target.emplace());
 }
 
-RoughenOptions options_from_json(const json& object, const std::string& source) {
-  if (!object.is_object())
-    throw InputError(fmt::format("{}: not a job: expected a table of options", source));
-  RoughenOptions options;
-  std::set<std::string> known;
-  for_each_option(options, [&](const OptionText& text, auto& member) {
+/// Reads options from the keys of one table and remembers which keys there are.
+class TableReader {
+ public:
+  TableReader(const json& table, const std::string& place) : table_(&table), place_(place) {
+    if (!table.is_object())
+      throw InputError(fmt::format("{}: not a job: expected a table of options", place));
+  }
+
+  template <class Member>
+  void operator()(const OptionText& text, Member& member) {
     const std::string key(text.name);
-    known.insert(key);
-    const auto found = object.find(key);
-    if (found == object.end()) return;
+    known_.insert(key);
+    const auto found = table_->find(key);
+    if (found == table_->end()) return;
     try {
       from_json_value(*found, member);
     } catch (const WrongType& wrong) {
       throw InputError(
-          fmt::format("{}: {} = {}; must be {}", source, key, found->dump(), wrong.expected));
+          fmt::format("{}: {} = {}; must be {}", place_, key, found->dump(), wrong.expected));
     }
-  });
-  for (const auto& [key, value] : object.items())
-    if (!known.contains(key))
-      throw InputError(
-          fmt::format("{}: unknown key {}; `roughmesh roughen --help` lists the options, "
-                      "written with _ for -",
-                      source, key));
+  }
+
+  void allow(const std::string& key) { known_.insert(key); }
+
+  void refuse_unknown_keys() const {
+    for (const auto& [key, value] : table_->items())
+      if (!known_.contains(key))
+        throw InputError(
+            fmt::format("{}: unknown key {}; `roughmesh roughen --help` lists the options, "
+                        "written with _ for -",
+                        place_, key));
+  }
+
+ private:
+  const json* table_;
+  std::string place_;
+  std::set<std::string> known_;
+};
+
+const char* const surfaces_key = "surface";
+
+/// One for each table of the list, on top of what stands above them.
+std::vector<Roughness> surfaces_from_json(const json& list, const Roughness& above,
+                                          const std::string& source) {
+  if (!list.is_array() || list.empty())
+    throw InputError(fmt::format("{}: surface; must be tables, written [[surface]] in TOML", source));
+  std::vector<Roughness> surfaces;
+  for (const json& table : list) {
+    surfaces.push_back(above);
+    TableReader reader(table, fmt::format("{}: surface {}", source, surfaces.size()));
+    for_each_surface_option(surfaces.back(), reader);
+    reader.refuse_unknown_keys();
+  }
+  return surfaces;
+}
+
+template <class Object>
+auto writer_to(Object& object) {
+  return [&object](const OptionText& text, const auto& member) {
+    object[std::string(text.name)] = to_json_value(member);
+  };
+}
+
+}  // namespace
+
+ordered_json options_to_json(const RoughenOptions& options) {
+  ordered_json object;
+  for_each_run_option(options, writer_to(object));
+  if (options.surfaces.size() == 1) {
+    for_each_surface_option(options.surfaces.front(), writer_to(object));
+    return object;
+  }
+  object[surfaces_key] = ordered_json::array();
+  for (const Roughness& roughness : options.surfaces)
+    for_each_surface_option(roughness, writer_to(object[surfaces_key].emplace_back()));
+  return object;
+}
+
+RoughenOptions options_from_json(const json& object, const std::string& source) {
+  RoughenOptions options;
+  TableReader reader(object, source);
+  for_each_run_option(options, reader);
+  for_each_surface_option(options.surfaces.front(), reader);
+  reader.allow(surfaces_key);
+  reader.refuse_unknown_keys();
+  if (object.contains(surfaces_key))
+    options.surfaces = surfaces_from_json(object[surfaces_key], options.surfaces.front(), source);
   return options;
 }
 

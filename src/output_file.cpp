@@ -12,6 +12,8 @@
 
 #include "roughmesh/mesh_io.hpp"
 
+#include "scratch_folder.hpp"
+
 namespace roughmesh {
 namespace detail {
 
@@ -193,6 +195,9 @@ void OutputFile::fail(int error) const {
 
 }  // namespace detail
 
-void discard_unfinished_files() noexcept { detail::UnfinishedFile::discard_all(); }
+void discard_unfinished_files() noexcept {
+  detail::UnfinishedFile::discard_all();
+  detail::discard_scratch_folders();
+}
 
 }  // namespace roughmesh

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "roughmesh/pipeline.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <numbers>
@@ -8,10 +9,12 @@
 
 #include <fmt/format.h>
 
+#include "roughmesh/curve.hpp"
 #include "roughmesh/displace.hpp"
 #include "roughmesh/move_volume.hpp"
 
 #include "parallel.hpp"
+#include "rough_surface.hpp"
 #include "warnings.hpp"
 
 namespace roughmesh {
@@ -29,19 +32,6 @@ auto timed(double& seconds, Stage&& stage) {
   return stage();
 }
 
-/// A link whose nodes move would need equal heights on both sides.
-void refuse_moving_links(const Mesh& mesh, const Surface& surface) {
-  std::vector<bool> moves(mesh.nodes.size(), false);
-  for (const Index node : surface.nodes) moves[node] = true;
-  for (const PeriodicLink& link : mesh.periodic_links)
-    for (const auto& [slave, master] : link.nodes)
-      if (moves[slave] || moves[master])
-        throw InputError(fmt::format(
-            "periodic link of entity {} to {}: node {} on it would move; periodic roughness is "
-            "not supported yet, choose a group without linked nodes",
-            link.entity, link.master_entity, mesh.node_tags[slave]));
-}
-
 Report begin_report(const Mesh& mesh, const RoughenOptions& options) {
   Report report;
   report.format = name(mesh.format);
@@ -56,34 +46,81 @@ Report begin_report(const Mesh& mesh, const RoughenOptions& options) {
   return report;
 }
 
-std::vector<std::string> cited_works(const FieldSampler& sampler, const Autocorrelation& rho) {
-  std::vector<std::string> works = sampler.citations();
-  for (std::string& work : rho.citations()) works.push_back(std::move(work));
-  works.emplace_back(
-      "Max (1999), Weights for computing vertex normals from facet normals, "
-      "doi:10.1080/10867651.1999.10487501");
-  return works;
-}
+using detail::FieldPlan;
+using detail::RoughSurfaces;
+using detail::SurfacePlan;
 
-void describe_surface(Report& report, const Surface& surface) {
-  report.surface_groups = surface.groups;
-  report.surface_nodes = surface.n_points();
-  report.surface_elements = surface.n_faces();
-  report.surface_area = surface.area;
+SurfaceReport describe(const Surface& surface, const SurfacePlan& plan) {
+  SurfaceReport report;
+  report.dimension = surface.dimension;
+  report.groups = surface.groups;
+  report.nodes = surface.n_points();
+  report.elements = surface.n_elements;
+  report.masked_nodes = std::count_if(plan.weights.begin(), plan.weights.end(),
+                                      [](double weight) { return weight < 1; });
+  report.area = surface.area;
   report.mesh_size = surface.mesh_size;
-  report.surface_components = surface.n_components;
+  report.components = surface.n_components;
   report.border_edges = surface.n_border_edges;
   report.sharp_edges = surface.n_sharp_edges;
   report.nonmanifold_edges = surface.n_nonmanifold_edges;
+  return report;
 }
 
-/// Values at surface points as values at mesh nodes, `zero` elsewhere.
-template <class Value>
-std::vector<Value> at_nodes(const Mesh& mesh, const Surface& surface,
-                            std::span<const Value> at_points, const Value& zero) {
+/// What Sq of one surface must be, over all of it and over what its masks leave whole.
+struct SqTarget {
+  ExpectedSq whole;
+  std::vector<double> unfaded_areas;  ///< empty where nothing is masked, or everything
+  std::optional<ExpectedSq> unfaded;
+};
+
+void add_once(std::vector<std::string>& works, std::vector<std::string> more) {
+  for (std::string& work : more)
+    if (std::find(works.begin(), works.end(), work) == works.end()) works.push_back(std::move(work));
+}
+
+std::vector<std::string> cited_works(std::span<const FieldSampler> samplers,
+                                     std::span<const FieldPlan> fields) {
+  std::vector<std::string> works;
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    add_once(works, samplers[f].citations());
+    add_once(works, fields[f].correlation.autocorrelation().citations());
+  }
+  add_once(works,
+           {"Max (1999), Weights for computing vertex normals from facet normals, "
+            "doi:10.1080/10867651.1999.10487501"});
+  return works;
+}
+
+SqTarget expect(const Surface& surface, const SurfacePlan& plan, const Correlation& correlation) {
+  SqTarget target{expected_sq(surface, correlation, {.weights = plan.weights}), {}, std::nullopt};
+  std::vector<double> areas = full_weight_areas(surface, plan.weights);
+  const auto n_whole = std::count_if(areas.begin(), areas.end(), [](double a) { return a > 0; });
+  if (n_whole == 0 || n_whole == surface.n_points()) return target;
+  target.unfaded = expected_sq(surface, correlation, {.weights = plan.weights, .areas = areas});
+  target.unfaded_areas = std::move(areas);
+  return target;
+}
+
+SurfaceStatistics measure(const Surface& surface, double rq, const SqTarget& target,
+                          std::span<const double> heights) {
+  SurfaceStatistics result{height_statistics(surface, heights), rq * target.whole.mean,
+                           rq * target.whole.standard_deviation, std::nullopt};
+  if (target.unfaded)
+    result.unfaded = UnfadedSq{height_statistics(surface, heights, target.unfaded_areas).sq,
+                               rq * target.unfaded->mean, rq * target.unfaded->standard_deviation};
+  return result;
+}
+
+/// Values at the points of the surfaces as values at mesh nodes, `zero` elsewhere; where surfaces
+/// meet, those of the last. `values_of(s)` are those of surface s.
+template <class Value, class Values>
+std::vector<Value> at_nodes(const Mesh& mesh, std::span<const Surface> surfaces, Values&& values_of,
+                            const Value& zero) {
   std::vector<Value> result(mesh.nodes.size(), zero);
-  for (std::size_t i = 0; i < surface.nodes.size(); ++i)
-    result[surface.nodes[i]] = at_points[surface.point_of_node[i]];
+  for (std::size_t s = 0; s < surfaces.size(); ++s)
+    for (std::size_t i = 0; i < surfaces[s].nodes.size(); ++i)
+      result[surfaces[s].nodes[i]] = values_of(s)[surfaces[s].point_of_node[i]];
   return result;
 }
 
@@ -94,13 +131,16 @@ std::vector<Vec3> differences(std::span<const Vec3> after, std::span<const Vec3>
 }
 
 /// What helps against inverted elements; a finer mesh does not, it makes them smaller.
-std::string remedy(const Autocorrelation& rho, const VolumeMover& mover) {
+std::string remedy(std::span<const FieldPlan> fields, const VolumeMover& mover) {
+  const bool is_smooth = std::all_of(fields.begin(), fields.end(), [](const FieldPlan& field) {
+    return field.correlation.autocorrelation().slope_variance().has_value();
+  });
   std::string text = "lower --rms";
-  text += rho.slope_variance()
+  text += is_smooth
               ? " or use a longer --length"
               : " or take a smoother --acf (slopes of this one grow as the mesh is refined)";
   if (mover.n_wall_nodes() > 0)
-    text += "; the rough surface ends on faces that stay, where elements invert first";
+    text += "; the rough surface ends on faces that stay, where elements invert first: --fade";
   return text + "; --allow-invalid writes it all the same";
 }
 
@@ -117,28 +157,127 @@ void refuse_invalid(const RoughMesh& rough, const std::string& remedy, Report& r
   report.warnings.push_back(found + "; written because of --allow-invalid");
 }
 
-RealizationReport describe(const RoughMesh& rough, const HeightStatistics& statistics,
-                           const ExpectedSq& expected, double rq) {
-  RealizationReport result;
-  result.index = rough.realization;
-  result.statistics = statistics;
-  result.sq_expected = rq * expected.mean;
-  result.sq_expected_std = rq * expected.standard_deviation;
-  result.inverted_elements = rough.check.inverted_elements;
-  result.min_quality = rough.check.min_quality;
-  return result;
-}
-
-std::vector<double> heights_of(const FieldSampler& sampler, const RoughenOptions& options,
-                               std::uint64_t realization) {
-  std::vector<double> heights = sampler.heights(options.seed, realization);
-  for (double& height : heights) height *= options.rms;
-  return heights;
-}
-
 VolumeMethod volume_method(const RoughenOptions& options) {
   return options.volume == VolumeChoice::move ? VolumeMethod::harmonic : VolumeMethod::none;
 }
+
+/// The stages of one run, in order; each fills in its part of the report.
+class Run {
+ public:
+  Run(const Mesh& mesh, const RoughenOptions& options, Report report)
+      : mesh_(mesh), options_(options), report_(std::move(report)) {}
+
+  Report make(const Deliver& deliver) {
+    select();
+    const VolumeMover mover = timed(times().volume, [&] {
+      return VolumeMover(mesh_, rough_.surfaces, volume_method(options_));
+    });
+    detail::warn_of_walls(report_, mover);
+    quality_before_ = timed(times().check, [&] { return min_quality(mesh_); });
+    prepare_fields();
+    RoughMesh rough{.mesh = mesh_};
+    rough.normals = at_nodes<Vec3>(
+        mesh_, rough_.surfaces,
+        [&](std::size_t s) -> const auto& { return rough_.surfaces[s].normals; }, Vec3::Zero());
+    for (std::uint64_t k = 0; k < options_.realizations; ++k) {
+      rough.realization = options_.first + k;
+      realize(mover, rough);
+      timed(times().write, [&] { deliver(rough, report_); });
+    }
+    return std::move(report_);
+  }
+
+ private:
+  Timings& times() { return report_.timings; }
+
+  void select() {
+    rough_ = timed(times().surface,
+                   [&] { return detail::prepare_surfaces(mesh_, options_.surfaces); });
+    for (std::size_t s = 0; s < rough_.surfaces.size(); ++s) {
+      const Surface& surface = rough_.surfaces[s];
+      report_.request.surfaces[s] = rough_.plans[s].request;
+      const Correlation correlation = detail::correlation_of(rough_.plans[s], rough_.fields);
+      SurfaceReport& described = report_.surfaces.emplace_back(describe(surface, rough_.plans[s]));
+      described.lengths = correlation.autocorrelation().equivalent_lengths();
+      described.fit_residual = correlation.autocorrelation().fit_residual();
+      described.resolution =
+          timed(times().surface, [&] { return assess_resolution(surface, correlation); });
+      detail::warn_of_surface(report_, surface, rough_.plans[s].request);
+      detail::warn_of_scale(report_, mesh_, described, rough_.plans[s].request);
+      targets_.push_back(timed(
+          times().audit, [&] { return expect(surface, rough_.plans[s], correlation); }));
+    }
+  }
+
+  void prepare_fields() {
+    std::vector<Audit> audits;
+    for (const FieldPlan& plan : rough_.fields) {
+      samplers_.push_back(timed(times().field, [&] {
+        return FieldSampler(plan.correlation.among(plan.masters), field_options(options_));
+      }));
+      audits.push_back(timed(times().audit, [&] { return samplers_.back().audit(); }));
+    }
+    for (std::size_t s = 0; s < rough_.surfaces.size(); ++s) {
+      const std::size_t field = rough_.plans[s].field;
+      report_.surfaces[s].field = samplers_[field].summary();
+      report_.surfaces[s].audit = audits[field];
+    }
+    detail::warn_of_fields(report_);
+    report_.citations = cited_works(samplers_, rough_.fields);
+  }
+
+  /// Heights of every surface for one realization.
+  std::vector<std::vector<double>> draw(std::uint64_t realization) const {
+    std::vector<std::vector<double>> samples, heights;
+    for (std::size_t f = 0; f < samplers_.size(); ++f)
+      samples.push_back(samplers_[f].heights(seed_of(f), realization));
+    for (const SurfacePlan& plan : rough_.plans)
+      heights.push_back(detail::heights_of(plan, rough_.fields[plan.field], samples[plan.field]));
+    return heights;
+  }
+
+  std::uint64_t seed_of(std::size_t field) const {
+    return std::find_if(rough_.plans.begin(), rough_.plans.end(),
+                        [&](const SurfacePlan& plan) { return plan.field == field; })
+        ->request.seed;
+  }
+
+  void realize(const VolumeMover& mover, RoughMesh& rough) {
+    const auto heights = timed(times().field, [&] { return draw(rough.realization); });
+    const std::vector<Vec3> displacements =
+        timed(times().displace, [&] { return displace_nodes(rough_.surfaces, heights); });
+    rough.mesh.nodes = timed(times().volume, [&] { return mover.move(displacements); });
+    rough.check = timed(times().check, [&] { return check_mesh(mesh_, rough.mesh.nodes); });
+    refuse_invalid(rough, remedy(rough_.fields, mover), report_);
+    if (report_.realizations.empty()) detail::warn_of_curved_elements(report_, rough.check);
+    rough.heights = at_nodes<double>(
+        mesh_, rough_.surfaces, [&](std::size_t s) -> const auto& { return heights[s]; }, 0.0);
+    rough.displacements = differences(rough.mesh.nodes, mesh_.nodes);
+    report_.realizations.push_back(describe(rough, mover, heights));
+  }
+
+  RealizationReport describe(const RoughMesh& rough, const VolumeMover& mover,
+                             const std::vector<std::vector<double>>& heights) const {
+    RealizationReport result;
+    result.index = rough.realization;
+    for (std::size_t s = 0; s < heights.size(); ++s)
+      result.surfaces.push_back(measure(rough_.surfaces[s], rough_.plans[s].request.rms,
+                                        targets_[s], heights[s]));
+    result.inverted_elements = rough.check.inverted_elements;
+    result.min_quality = rough.check.min_quality;
+    result.min_quality_before = quality_before_;
+    result.volume_method = mover.method();
+    return result;
+  }
+
+  const Mesh& mesh_;
+  const RoughenOptions& options_;
+  Report report_;
+  RoughSurfaces rough_;
+  std::vector<SqTarget> targets_;       // one for each surface
+  std::vector<FieldSampler> samplers_;  // one for each field
+  double quality_before_ = 0;
+};
 
 }  // namespace
 
@@ -147,54 +286,7 @@ Report roughen(const Mesh& mesh, const RoughenOptions& options, const Deliver& d
   const detail::ThreadLimit threads(options.threads);
   Report report = begin_report(mesh, options);
   report.request.threads = threads.n_threads();  // results are the same bits at equal threads only
-  Timings& t = report.timings;
-
-  const Surface surface =
-      timed(t.surface, [&] { return select_surface(mesh, surface_options(options)); });
-  refuse_moving_links(mesh, surface);
-  describe_surface(report, surface);
-  const FieldModel model = field_model(options, surface.points);
-  const Autocorrelation& rho = model.autocorrelation;
-  const Distance& distance = model.distance;
-  report.lengths = rho.equivalent_lengths();
-  report.resolution = timed(t.surface, [&] { return assess_resolution(surface, rho, distance); });
-  detail::warn_of_surface(report, surface);
-  detail::warn_of_scale(report, mesh, surface);
-
-  const VolumeMover mover =
-      timed(t.volume, [&] { return VolumeMover(mesh, surface, volume_method(options)); });
-  detail::warn_of_walls(report, mover);
-  const double quality_before = timed(t.check, [&] { return min_quality(mesh); });
-
-  const FieldSampler sampler = timed(
-      t.field, [&] { return FieldSampler(surface.points, rho, distance, field_options(options)); });
-  report.field = sampler.summary();
-  report.audit = timed(t.audit, [&] { return sampler.audit(); });
-  detail::warn_of_field(report);
-  const ExpectedSq expected = timed(t.audit, [&] { return expected_sq(surface, rho, distance); });
-  report.citations = cited_works(sampler, rho);
-
-  RoughMesh rough{.mesh = mesh,
-                  .normals = at_nodes<Vec3>(mesh, surface, surface.normals, Vec3::Zero())};
-  for (std::uint64_t k = 0; k < options.realizations; ++k) {
-    rough.realization = options.first + k;
-    const std::vector<double> heights =
-        timed(t.field, [&] { return heights_of(sampler, options, rough.realization); });
-    const std::vector<Vec3> displacements =
-        timed(t.displace, [&] { return displace(surface, heights); });
-    rough.mesh.nodes = timed(t.volume, [&] { return mover.move(displacements); });
-    rough.check = timed(t.check, [&] { return check_mesh(mesh, rough.mesh.nodes); });
-    refuse_invalid(rough, remedy(rho, mover), report);
-
-    rough.heights = at_nodes<double>(mesh, surface, heights, 0.0);
-    rough.displacements = differences(rough.mesh.nodes, mesh.nodes);
-    report.realizations.push_back(
-        describe(rough, height_statistics(surface, heights), expected, options.rms));
-    report.realizations.back().min_quality_before = quality_before;
-    report.realizations.back().volume_method = mover.method();
-    timed(t.write, [&] { deliver(rough, report); });
-  }
-  return report;
+  return Run(mesh, options, std::move(report)).make(deliver);
 }
 
 std::vector<PointField> point_fields(const RoughMesh& rough) {
@@ -209,17 +301,52 @@ std::vector<PointField> point_fields(const RoughMesh& rough) {
           {"displacement", 3, flatten(rough.displacements)}};
 }
 
-FieldModel field_model(const RoughenOptions& options, std::span<const Vec3> points) {
-  Autocorrelation autocorrelation(autocorrelation_options(options));
-  if (options.distance == DistanceKind::great_circle)
-    return {std::move(autocorrelation), Distance::great_circle(points)};
-  if (options.length.size() < 2) return {std::move(autocorrelation), Distance::euclidean()};
+namespace {
 
-  const double turn = options.angle / 180.0 * std::numbers::pi;
-  Anisotropy anisotropy;
-  anisotropy.lengths = {options.length[0], options.length[1], options.length.back()};
+/// Lengths along the axes that the request turns; all equal for an isotropic field.
+Anisotropy anisotropy_of(const Roughness& request, double length) {
+  Anisotropy anisotropy{.lengths = {length, length, length}};
+  if (request.length.size() > 1)
+    anisotropy.lengths = {request.length[0], request.length[1], request.length.back()};
+  const double turn = request.angle / 180.0 * std::numbers::pi;
   anisotropy.axes = Eigen::AngleAxisd(turn, Vec3::UnitZ()).toRotationMatrix();
-  return {std::move(autocorrelation), Distance::stretched(anisotropy)};
+  return anisotropy;
+}
+
+Vec3 period_of(const Roughness& request) {
+  if (request.period.size() != 3)
+    throw InputError(fmt::format("--distance: {}; needs --period LX,LY,LZ",
+                                 name(request.distance.value_or(DistanceKind::periodic))));
+  return {request.period[0], request.period[1], request.period[2]};
+}
+
+Correlation along_curve(const Autocorrelation& autocorrelation, const Surface& surface) {
+  CurvePlaces curve = curve_places(surface);
+  return {std::move(curve.places), autocorrelation,
+          Distance::curve(std::move(curve.closed_lengths))};
+}
+
+Distance distance_between(const Roughness& request, double length, const Surface& surface) {
+  switch (request.distance.value_or(DistanceKind::euclidean)) {
+    case DistanceKind::great_circle:
+      return Distance::great_circle(surface.points);
+    case DistanceKind::periodic:
+      return Distance::periodic(period_of(request), anisotropy_of(request, length));
+    case DistanceKind::minimum_image:
+      return Distance::minimum_image(period_of(request), anisotropy_of(request, length));
+    default:
+      return request.length.size() < 2 ? Distance::euclidean()
+                                       : Distance::stretched(anisotropy_of(request, length));
+  }
+}
+
+}  // namespace
+
+Correlation field_model(const Roughness& request, const Surface& surface) {
+  const Autocorrelation autocorrelation(autocorrelation_options(request));
+  if (request.distance == DistanceKind::curve) return along_curve(autocorrelation, surface);
+  return {surface.points, autocorrelation,
+          distance_between(request, autocorrelation.length(), surface)};
 }
 
 }  // namespace roughmesh

@@ -25,11 +25,19 @@ double over_triangles(std::span<const Vec3> p, Measure&& measure) {
 
 }  // namespace
 
-double polygon_area(std::span<const Vec3> corners) {
+Vec3 face_vector(std::span<const Vec3> corners, const Vec3& plane_normal) {
+  if (corners.size() == 2) return (corners[1] - corners[0]).cross(plane_normal);
+  return area_vector(corners);
+}
+
+double face_area(std::span<const Vec3> corners) {
+  if (corners.size() == 2) return (corners[1] - corners[0]).norm();
   return over_triangles(corners, triangle_area);
 }
 
-double cone_volume(std::span<const Vec3> corners, const Vec3& apex) {
+double cone_volume(std::span<const Vec3> corners, const Vec3& apex, const Vec3& plane_normal) {
+  if (corners.size() == 2)
+    return (corners[0] - apex).cross(corners[1] - apex).dot(plane_normal) / 2;
   return over_triangles(corners, [&](const Vec3& a, const Vec3& b, const Vec3& c) {
     return tetrahedron_volume(apex, a, b, c);
   });

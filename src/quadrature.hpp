@@ -26,22 +26,30 @@ double gamma_expectation(double shape, double lowest, const Function& f) {
   return sum * step * std::exp(-log_scaled_gamma(shape));
 }
 
-/// Integral of f over (0, width) by the double exponential rule; f(from_left, from_right) is given
-/// its distance from both ends, so that algebraic singularities there cost no digits. H. Takahasi
-/// and M. Mori (1974), Publ. RIMS 9:721-741, doi:10.2977/prims/1195192451.
-template <class Function>
-double tanh_sinh(double width, const Function& f) {
+/// Calls visit(from_left, from_right, weight) for the nodes of the double exponential rule on (0,
+/// width), each given by its distance from both ends, so that algebraic singularities there cost no
+/// digits. H. Takahasi and M. Mori (1974), Publ. RIMS 9:721-741, doi:10.2977/prims/1195192451.
+template <class Visit>
+void tanh_sinh_nodes(double width, const Visit& visit) {
   constexpr int half_steps = 56;
   constexpr double step = 3.4 / half_steps;
-  double sum = 0;
   for (int k = -half_steps; k <= half_steps; ++k) {
     const double t = k * step;
     const double y = std::numbers::pi * std::sinh(t);
     const double left = width / (1 + std::exp(-y));
     const double right = width / (1 + std::exp(y));
-    sum += f(left, right) * left * right * std::cosh(t);
+    visit(left, right, left * right * std::cosh(t) * step * std::numbers::pi / width);
   }
-  return sum * step * std::numbers::pi / width;
+}
+
+/// Integral of f over (0, width) by that rule; f(from_left, from_right) is given its distance from
+/// both ends.
+template <class Function>
+double tanh_sinh(double width, const Function& f) {
+  double sum = 0;
+  tanh_sinh_nodes(
+      width, [&](double left, double right, double weight) { sum += weight * f(left, right); });
+  return sum;
 }
 
 }  // namespace roughmesh::detail

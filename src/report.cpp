@@ -37,16 +37,18 @@ ordered_json input_json(const Report& r) {
           {"elements", r.n_elements}};
 }
 
-ordered_json surface_json(const Report& r) {
-  return {{"groups", r.surface_groups},
-          {"nodes", r.surface_nodes},
-          {"elements", r.surface_elements},
-          {"area", number(r.surface_area)},
+ordered_json surface_json(const SurfaceReport& r) {
+  return {{"groups", r.groups},
+          {"dimension", r.dimension},
+          {"nodes", r.nodes},
+          {"elements", r.elements},
+          {"masked_nodes", r.masked_nodes},
+          {"area", number(r.area)},
           {"mesh_size",
            {{"min", number(r.mesh_size.min)},
             {"median", number(r.mesh_size.median)},
             {"max", number(r.mesh_size.max)}}},
-          {"components", r.surface_components},
+          {"components", r.components},
           {"border_edges", r.border_edges},
           {"sharp_edges", r.sharp_edges},
           {"nonmanifold_edges", r.nonmanifold_edges}};
@@ -64,13 +66,13 @@ ordered_json resolution_json(const Resolution& r) {
           {"largest_safe_rq", number(r.largest_safe_rq)}};
 }
 
-ordered_json field_json(const Report& r) {
+ordered_json field_json(const SurfaceReport& r, double tolerance) {
   return {{"method", name(r.field.method)},
-          {"tolerance", r.request.tolerance},
+          {"tolerance", tolerance},
           {"covariance_error", number(r.audit.covariance_error)},
           {"audited_pairs", r.audit.n_pairs},
           {"equivalent_lengths",
-           {{"formula", number(r.lengths.formula)},
+           {{"formula", optional(r.lengths.formula)},
             {"one_over_e", number(r.lengths.one_over_e)},
             {"integral", optional(r.lengths.integral)},
             {"sal", number(r.lengths.sal)}}},
@@ -79,24 +81,46 @@ ordered_json field_json(const Report& r) {
           {"negative_eigenvalues", r.field.negative_eigenvalues},
           {"smallest_eigenvalue", optional(r.field.smallest_eigenvalue)},
           {"smallest_correlation", number(r.field.smallest_correlation)},
-          {"variance_change", number(r.field.variance_change)}};
+          {"variance_change", number(r.field.variance_change)},
+          {"fit_residual", optional(r.fit_residual)},
+          {"minimum_image_difference", optional(r.field.minimum_image_difference)}};
+}
+
+ordered_json statistics_json(const SurfaceStatistics& r) {
+  const auto unfaded = [&](double UnfadedSq::*member) {
+    return r.unfaded ? number((*r.unfaded).*member) : ordered_json();
+  };
+  return {{"sq", number(r.heights.sq)},
+          {"sq_expected", number(r.sq_expected)},
+          {"sq_expected_std", number(r.sq_expected_std)},
+          {"sq_unfaded", unfaded(&UnfadedSq::sq)},
+          {"sq_unfaded_expected", unfaded(&UnfadedSq::expected)},
+          {"sq_unfaded_expected_std", unfaded(&UnfadedSq::expected_std)},
+          {"ssk", number(r.heights.ssk)},
+          {"sku", number(r.heights.sku)},
+          {"sz", number(r.heights.sz)},
+          {"mean", number(r.heights.mean)}};
 }
 
 ordered_json realization_json(const RealizationReport& r) {
-  return {{"index", r.index},
-          {"path", r.path},
-          {"sq", number(r.statistics.sq)},
-          {"sq_expected", number(r.sq_expected)},
-          {"sq_expected_std", number(r.sq_expected_std)},
-          {"ssk", number(r.statistics.ssk)},
-          {"sku", number(r.statistics.sku)},
-          {"sz", number(r.statistics.sz)},
-          {"mean", number(r.statistics.mean)},
-          {"inverted_elements", r.inverted_elements},
-          {"min_quality", number(r.min_quality)},
-          {"min_quality_before", number(r.min_quality_before)},
-          {"self_intersections", optional(r.self_intersections)},
-          {"volume_method", name(r.volume_method)}};
+  ordered_json object = {{"index", r.index}, {"path", r.path}};
+  object.update(statistics_json(r.surfaces.front()));
+  object.update({{"inverted_elements", r.inverted_elements},
+                 {"min_quality", number(r.min_quality)},
+                 {"min_quality_before", number(r.min_quality_before)},
+                 {"self_intersections", optional(r.self_intersections)},
+                 {"volume_method", name(r.volume_method)}});
+  if (r.surfaces.size() < 2) return object;
+  for (const SurfaceStatistics& surface : r.surfaces)
+    object["surfaces"].push_back(statistics_json(surface));
+  return object;
+}
+
+// The keys that describe one surface; those of the first stand at the top of a report.
+ordered_json whole_surface_json(const SurfaceReport& r, double tolerance) {
+  return {{"surface", surface_json(r)},
+          {"resolution", resolution_json(r.resolution)},
+          {"field", field_json(r, tolerance)}};
 }
 
 ordered_json timings_json(const Timings& t) {
@@ -112,9 +136,11 @@ std::string to_json(const Report& report) {
   object["roughmesh"] = version();
   object["input"] = input_json(report);
   object["request"] = detail::options_to_json(report.request);
-  object["surface"] = surface_json(report);
-  object["resolution"] = resolution_json(report.resolution);
-  object["field"] = field_json(report);
+  const double tolerance = report.request.tolerance;
+  object.update(whole_surface_json(report.surfaces.front(), tolerance));
+  if (report.surfaces.size() > 1)
+    for (const SurfaceReport& surface : report.surfaces)
+      object["surfaces"].push_back(whole_surface_json(surface, tolerance));
   object["realizations"] = ordered_json::array();
   for (const RealizationReport& realization : report.realizations)
     object["realizations"].push_back(realization_json(realization));

@@ -9,7 +9,9 @@
 
 #include <fmt/format.h>
 
+#include "matching_points.hpp"
 #include "parallel.hpp"
+#include "polygon.hpp"
 
 namespace roughmesh {
 namespace {
@@ -21,13 +23,13 @@ constexpr double largest_share_above_nyquist = 0.05;
 // and the spread of usual triangulations must not warn.
 constexpr double largest_edge_allowance = 2;
 
-// ---- What the faces have in common: sums over triangles ----
+// ---- What the faces have in common: sums over triangles, or lines ----
 
-// Sums over triangles, per unit of Rq.
+// Sums over triangles or lines, per unit of Rq.
 struct FaceSums {
   double area = 0;
   double slope_integral = 0;  ///< of the squared slope of the linear interpolant
-  double field_area = 0;      ///< area measured in units of the field's own decorrelation
+  double field_area = 0;      ///< area (or length) in units of the field's own decorrelation
   double stretch_area = 0;    ///< area times squared tangential stretch, 2 where isotropic
 };
 
@@ -46,29 +48,43 @@ double area_from_squares(const std::array<double, 3>& s) {
   return std::sqrt(std::max(0.0, sum * sum - 2 * sum_of_squares)) / 4;
 }
 
-FaceSums triangle_sums(const std::array<Vec3, 3>& x, const Autocorrelation& autocorrelation,
-                       const Distance& distance) {
+FaceSums triangle_sums(const std::array<Index, 3>& corners, const Surface& surface,
+                       const Correlation& correlation) {
   FaceSums sums;
+  const Eigen::Matrix3d& stretch = correlation.distance().stretch();
+  const std::array<Vec3, 3> x = {surface.points[corners[0]], surface.points[corners[1]],
+                                 surface.points[corners[2]]};
   const Vec3 normal = (x[1] - x[0]).cross(x[2] - x[0]);
   const double twice_area = normal.norm();
   if (!(twice_area > 0)) return sums;
   std::array<double, 3> variogram{};  // E[(d_i - d_j)^2] over the edge opposite to each corner
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3 &a = x[(k + 1) % 3], &b = x[(k + 2) % 3];
-    variogram[k] = 2 * (1 - autocorrelation.rho(distance(a, b)));
+    variogram[k] = 2 * (1 - correlation(corners[(k + 1) % 3], corners[(k + 2) % 3]));
     const double cotangent = (a - x[k]).dot(b - x[k]) / twice_area;
     sums.slope_integral += cotangent * variogram[k] / 2;
   }
   sums.area = twice_area / 2;
   sums.field_area = area_from_squares(variogram);
-  sums.stretch_area = sums.area * (distance.stretch().squaredNorm() -
-                                   (distance.stretch() * normal / twice_area).squaredNorm());
+  sums.stretch_area =
+      sums.area * (stretch.squaredNorm() - (stretch * normal / twice_area).squaredNorm());
+  return sums;
+}
+
+// Along a line the interpolant has one slope (docs/math.md, eq. 39).
+FaceSums line_sums(Index i, Index j, const Surface& surface, const Correlation& correlation) {
+  FaceSums sums;
+  const Vec3 line = surface.points[j] - surface.points[i];
+  sums.area = line.norm();
+  const double variogram = 2 * (1 - correlation(i, j));
+  sums.slope_integral = variogram / sums.area;
+  sums.field_area = std::sqrt(variogram);
+  sums.stretch_area = (correlation.distance().stretch() * line).squaredNorm() / sums.area;
   return sums;
 }
 
 // Quadrangles count as the two triangles of a fan.
-FaceSums face_sums(const Surface& surface, const Autocorrelation& autocorrelation,
-                   const Distance& distance) {
+FaceSums face_sums(const Surface& surface, const Correlation& correlation) {
   constexpr std::size_t grain = 4096;
   const std::size_t n = surface.face_tags.size();
   std::vector<FaceSums> parts((n + grain - 1) / grain);
@@ -76,10 +92,10 @@ FaceSums face_sums(const Surface& surface, const Autocorrelation& autocorrelatio
     FaceSums& part = parts[begin / grain];
     for (std::size_t f = begin; f < end; ++f) {
       const auto face = surface.face(static_cast<Index>(f));
+      if (surface.dimension == 1)
+        part += line_sums(face[0], face[1], surface, correlation);
       for (std::size_t k = 2; k < face.size(); ++k)
-        part += triangle_sums(
-            {surface.points[face[0]], surface.points[face[k - 1]], surface.points[face[k]]},
-            autocorrelation, distance);
+        part += triangle_sums({face[0], face[k - 1], face[k]}, surface, correlation);
     }
   });
   FaceSums sums;
@@ -90,14 +106,14 @@ FaceSums face_sums(const Surface& surface, const Autocorrelation& autocorrelatio
 // ---- Largest height ----
 
 // Area and half the border of the surface, lengths being those of the field: the root mean square
-// difference of two heights (docs/math.md, eq. 24).
+// difference of two heights (docs/math.md, eq. 24). A curve has no area, and its whole length counts
+// as the half border of a surface does (eq. 39).
 struct FieldSize {
   double area = 0;
   double half_border = 0;
 };
 
-double half_border(const Surface& surface, const Autocorrelation& autocorrelation,
-                   const Distance& distance) {
+double half_border(const Surface& surface, const Correlation& correlation) {
   if (surface.n_border_edges == 0) return 0;
   std::vector<std::pair<Index, Index>> edges;
   for (Index f = 0; f < surface.n_faces(); ++f) {
@@ -110,12 +126,16 @@ double half_border(const Surface& surface, const Autocorrelation& autocorrelatio
   for (auto first = edges.begin(); first != edges.end();) {
     const auto next = std::find_if(first, edges.end(), [&](const auto& e) { return e != *first; });
     const auto& [i, j] = *first;
-    if (next - first == 1)
-      sum +=
-          std::sqrt(2 * (1 - autocorrelation.rho(distance(surface.points[i], surface.points[j]))));
+    if (next - first == 1) sum += std::sqrt(2 * (1 - correlation(i, j)));
     first = next;
   }
   return sum / 2;
+}
+
+FieldSize field_size(const Surface& surface, const FaceSums& sums,
+                     const Correlation& correlation) {
+  if (surface.dimension == 1) return {0, sums.field_area};
+  return {sums.field_area, half_border(surface, correlation)};
 }
 
 // Number of independent patches at the level u: expected Euler characteristic of the part above u
@@ -153,9 +173,7 @@ std::vector<char> points_on_sharp_edges(const Surface& surface) {
   for (Index f = 0; f < surface.n_faces(); ++f) {
     corners.clear();
     for (const Index i : surface.face(f)) corners.push_back(surface.points[i]);
-    Vec3 normal = Vec3::Zero();
-    for (std::size_t k = 2; k < corners.size(); ++k)
-      normal += (corners[k - 1] - corners[0]).cross(corners[k] - corners[0]);
+    const Vec3 normal = detail::face_vector(corners, surface.plane_normal);
     for (const Index i : surface.face(f))
       if (surface.normals[i].dot(normal) < least_cosine * normal.norm()) is_sharp[i] = 1;
   }
@@ -233,8 +251,10 @@ void warn_of_folds(const Resolution& resolution, double rq, std::vector<std::str
 
 }  // namespace
 
-Resolution assess_resolution(const Surface& surface, const Autocorrelation& autocorrelation,
-                             const Distance& distance) {
+Resolution assess_resolution(const Surface& surface, const Correlation& correlation) {
+  detail::require_points_of(surface, correlation);
+  const Autocorrelation& autocorrelation = correlation.autocorrelation();
+  const Distance& distance = correlation.distance();
   Resolution result;
   const double h = surface.mesh_size.median;
   result.mesh_size = h;
@@ -248,16 +268,16 @@ Resolution assess_resolution(const Surface& surface, const Autocorrelation& auto
   }
   // rho along the axis of the shortest length, where everything is worst.
   const auto rho = [&](double r) { return autocorrelation.rho(largest_stretch * r); };
-  result.spectrum_share_above_nyquist =
-      autocorrelation.spectrum_share_above(std::numbers::pi / (h * largest_stretch), 2);
+  result.spectrum_share_above_nyquist = autocorrelation.spectrum_share_above(
+      std::numbers::pi / (h * largest_stretch), surface.dimension);
   result.interpolation_error = std::sqrt(std::max(0.0, 1 + (1 + rho(h)) / 2 - 2 * rho(h / 2)));
 
-  const FaceSums sums = face_sums(surface, autocorrelation, distance);
+  const FaceSums sums = face_sums(surface, correlation);
   result.rms_slope = std::sqrt(std::max(0.0, sums.slope_integral) / sums.area);
   if (const auto variance = autocorrelation.slope_variance())
     result.field_slope = std::sqrt(*variance * sums.stretch_area / sums.area);
   result.expected_max_height =
-      expected_max_height({sums.field_area, half_border(surface, autocorrelation, distance)},
+      expected_max_height(field_size(surface, sums, correlation),
                           static_cast<double>(surface.n_points()));
   const double curvature = largest_curvature(surface);
   result.min_curvature_radius = curvature > 0 ? 1 / curvature : infinity;

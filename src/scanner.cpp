@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -32,6 +33,22 @@ std::string_view Scanner::text_token() {
   const char* const start = position_;
   position_ = std::find_if(position_, end_, is_space);
   return {start, static_cast<std::size_t>(position_ - start)};
+}
+
+Tag Scanner::text_integer(std::string_view token) {
+  position_ = token.data();
+  const char* const whole = std::exchange(end_, token.data() + token.size());
+  const Tag value = text_integer();
+  end_ = whole;
+  return value;
+}
+
+double Scanner::text_real(std::string_view token) {
+  position_ = token.data();
+  const char* const whole = std::exchange(end_, token.data() + token.size());
+  const double value = text_real();
+  end_ = whole;
+  return value;
 }
 
 Tag Scanner::size() {
@@ -114,5 +131,17 @@ std::string printable(std::string_view text) {
 }
 
 std::string quoted(std::string_view text) { return '"' + printable(text) + '"'; }
+
+FileBytes without_comments(const FileBytes& file, char mark) {
+  FileBytes copy{file.path, std::make_unique_for_overwrite<char[]>(file.size + 1), file.size};
+  bool is_comment = false;
+  for (std::size_t i = 0; i < file.size; ++i) {
+    const char c = file.data[i];
+    is_comment = c != '\n' && (is_comment || c == mark);
+    copy.data[i] = is_comment ? ' ' : c;
+  }
+  copy.data[file.size] = '\0';
+  return copy;
+}
 
 }  // namespace roughmesh::detail

@@ -14,6 +14,7 @@
 #include "roughmesh/mesh_io.hpp"
 
 #include "mesh_source.hpp"
+#include "text.hpp"
 
 namespace roughmesh::detail {
 
@@ -63,10 +64,23 @@ class Scanner {
   Tag text_integer();
   double text_real();  ///< finite, else it fails
 
+  /// Of a piece of the text that is one number whatever stands behind it; moves to its end.
+  Tag text_integer(std::string_view token);
+  double text_real(std::string_view token);
+
   Tag integer() { return encoding_ == Encoding::text ? text_integer() : bytes<std::int32_t>(); }
   Tag size();  ///< 0 to 2^63 - 1
   double real();
   void skip_number(std::size_t n_bytes);  ///< of any kind; so many bytes in a binary file
+
+  template <typename T>
+  T bytes() {  ///< a number of a binary file, in the file's byte order
+    if (remaining() < sizeof(T)) fail(cut_short);
+    T value;
+    std::memcpy(&value, position_, sizeof(T));
+    position_ += sizeof(T);
+    return swap_bytes_ ? reverse_bytes(value) : value;
+  }
 
   /// A number of things of which each takes at least so many bytes: fails where they cannot fit
   /// into what remains, before anything is allocated for them.
@@ -79,14 +93,6 @@ class Scanner {
   [[noreturn]] void refuse(std::string_view what) const;
 
  private:
-  template <typename T>
-  T bytes() {
-    if (remaining() < sizeof(T)) fail(cut_short);
-    T value;
-    std::memcpy(&value, position_, sizeof(T));
-    position_ += sizeof(T);
-    return swap_bytes_ ? reverse_bytes(value) : value;
-  }
   [[noreturn]] void fail_token(std::string_view expected) const;
   double checked_real(std::from_chars_result result, double value);
 
@@ -103,6 +109,11 @@ class Scanner {
 /// For messages: at most 24 characters, nothing that could break a line or a terminal.
 std::string printable(std::string_view text);
 std::string quoted(std::string_view text);  ///< likewise, in quotes
+
+
+/// A copy of a text in which comments, from the mark to the end of their line, are spaces: what is
+/// read from it stands at the same offsets in the file.
+FileBytes without_comments(const FileBytes& file, char mark);
 
 // In the header: a mesh of a million nodes has fifty million integers.
 inline Tag Scanner::text_integer() {

@@ -9,6 +9,7 @@
 
 #include "matern.hpp"
 #include "quadrature.hpp"
+#include "stable_law.hpp"
 
 namespace roughmesh::detail {
 namespace {
@@ -38,15 +39,6 @@ double rational_quadratic_share(double a, double x, int dimension) {
   const double lowest = 2 * std::log(x / (erfc_reach * std::numbers::sqrt2));
   return gamma_expectation(
       a, lowest, [x](double s) { return std::erfc(x * std::exp(-s / 2) / std::numbers::sqrt2); });
-}
-
-// log of M. Kanter's function a(u) (1975), Ann. Probab. 3:697-707, doi:10.1214/aop/1176996309:
-// S = (a(U) / W)^(1/alpha - 1), with U uniform on (0, pi) and W exponential, is positive
-// alpha-stable. `rest` is pi - u.
-double log_kanter(double alpha, double u, double rest) {
-  const double log_sine = std::log(std::sin(std::min(u, rest)));
-  return (alpha * std::log(std::sin(alpha * u)) - log_sine) / (1 - alpha) +
-         std::log(std::sin((1 - alpha) * u));
 }
 
 // exp(-(r/l)^p) = E[exp(-(r/l)^2 S)] with S positive (p/2)-stable, so the share is that of
@@ -94,6 +86,8 @@ double spectrum_share_above(Family family, double shape, double x, int dimension
       return stretched_share(shape, x, dimension);
     case Family::rational_quadratic:
       return rational_quadratic_share(shape, x, dimension);
+    case Family::table:
+      break;  // not of the form rho(r / l); it sums the shares of its Gaussians
   }
   return 0;
 }

@@ -42,12 +42,16 @@ Surface select_surface(const Mesh& mesh, const SurfaceOptions& options) {
   check_options(options);
   detail::ChosenFaces chosen = detail::choose_faces(mesh, options.groups);
   detail::WeldedPoints welded = detail::weld_points(mesh, chosen.faces.corners);
-  auto [faces, n_duplicates] = detail::canonical_faces(chosen.faces, welded.point_of_node);
+  auto [faces, n_elements, n_duplicates] =
+      detail::canonical_faces(chosen.faces, welded.point_of_node);
   const detail::EdgeTable edges =
       detail::make_edges(faces, static_cast<Index>(welded.points.size()));
 
   Surface surface;
+  surface.dimension = faces.dimension;
+  surface.plane_normal = faces.plane_normal;
   surface.groups = std::move(chosen.groups);
+  surface.n_elements = n_elements;
   surface.n_duplicate_faces = n_duplicates;
   surface.n_components = detail::orient_faces(mesh, welded, edges, faces);
   for (Index f = 0; options.flip && f < faces.size(); ++f) faces.turn(f);
@@ -75,7 +79,8 @@ double enclosed_volume(const Surface& surface, std::span<const Vec3> positions) 
   for (const Vec3& x : positions) centre += x / static_cast<double>(positions.size());
   double volume = 0;
   for (Index f = 0; f < surface.n_faces(); ++f)
-    volume += detail::cone_volume(detail::gather(surface.face(f), positions).span(), centre);
+    volume += detail::cone_volume(detail::gather(surface.face(f), positions).span(), centre,
+                                  surface.plane_normal);
   return volume;
 }
 

@@ -21,10 +21,17 @@ template <class Visit>
 void for_each_side(const Faces& faces, Visit&& visit) {
   for (Index f = 0; f < faces.size(); ++f) {
     const auto corners = faces.face(f);
-    for (std::size_t k = 0; k < corners.size(); ++k)
-      visit(f, FaceSide{corners[k], corners[(k + 1) % corners.size()],
-                        faces.offsets[f] + static_cast<Index>(k)});
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const Index to = faces.dimension == 1 ? corners[k] : corners[(k + 1) % corners.size()];
+      visit(f, FaceSide{corners[k], to, faces.offsets[f] + static_cast<Index>(k)});
+    }
   }
+}
+
+// Two lines of a consistent chain meet at a point that one leaves and the other reaches, just as
+// two faces meet at an edge that one runs along to and the other fro.
+bool is_forward(const Faces& faces, Index face, const FaceSide& side) {
+  return faces.dimension == 1 ? side.corner == faces.offsets[face] : side.from < side.to;
 }
 
 // Sides in one bucket per smaller point: sorting a few at a time is linear in the number of faces.
@@ -45,7 +52,8 @@ Buckets make_buckets(const Faces& faces, Index n_points) {
   std::vector<Index> next(buckets.offsets.begin(), buckets.offsets.end() - 1);
   for_each_side(faces, [&](Index face, const FaceSide& side) {
     const auto [smaller, larger] = std::minmax(side.from, side.to);
-    buckets.sides[next[smaller]++] = {larger, side.corner, {face, side.from == smaller}};
+    buckets.sides[next[smaller]++] = {
+        larger, side.corner, {face, is_forward(faces, face, side)}};
   });
   return buckets;
 }

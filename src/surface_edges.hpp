@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Edges of a surface and the faces that meet there.
+// Edges of a surface and the faces that meet there; points of a curve and the lines that do.
 #pragma once
 
 #include <array>
@@ -10,14 +10,16 @@
 
 namespace roughmesh::detail {
 
-/// A face at an edge.
+/// A face at an edge, or a line at a point.
 struct Side {
   Index face = 0;
-  bool forward = false;  ///< the face runs along the edge from its smaller to its larger point
+  /// The face runs along the edge from its smaller to its larger point; the line leaves the point.
+  bool forward = false;
 };
 
 struct EdgeTable {
-  std::vector<std::array<Index, 2>> points;  ///< n pairs, smaller first, in ascending order
+  /// n pairs, smaller first, in ascending order. An "edge" of a curve is a point, twice.
+  std::vector<std::array<Index, 2>> points;
   std::vector<Index> offsets = {0};          ///< n + 1 positions in sides
   std::vector<Side> sides;                   ///< of each edge, in the order of the faces
   std::vector<Index> edge_of_corner;  ///< for each of faces.corners, the edge that starts there

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace roughmesh::detail {
 namespace {
@@ -27,9 +28,9 @@ Polygon without_repeated_neighbours(std::span<const Index> nodes,
   return polygon;
 }
 
-bool has_area(const FaceKey& key, std::size_t n_corners) {
+bool has_extent(const FaceKey& key, std::size_t n_corners, int dimension) {
   const auto end = key.begin() + static_cast<std::ptrdiff_t>(n_corners);
-  return n_corners >= 3 && std::adjacent_find(key.begin(), end) == end;
+  return static_cast<int>(n_corners) > dimension && std::adjacent_find(key.begin(), end) == end;
 }
 
 struct Candidate {
@@ -44,12 +45,17 @@ std::vector<Candidate> sorted_candidates(const Faces& on_nodes,
   for (Index f = 0; f < on_nodes.size(); ++f) {
     const Polygon polygon = without_repeated_neighbours(on_nodes.face(f), point_of_node);
     const FaceKey key = face_key(polygon.span());
-    if (has_area(key, polygon.n)) candidates.push_back({key, f});
+    if (has_extent(key, polygon.n, on_nodes.dimension)) candidates.push_back({key, f});
   }
   std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
     return a.key != b.key ? a.key < b.key : a.face < b.face;
   });
   return candidates;
+}
+
+Index n_distinct(std::vector<Index> numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  return static_cast<Index>(std::unique(numbers.begin(), numbers.end()) - numbers.begin());
 }
 
 }  // namespace
@@ -62,7 +68,8 @@ void Faces::add(std::span<const Index> face_corners, Tag tag, Index order) {
 }
 
 void Faces::turn(Index i) {
-  std::reverse(corners.begin() + offsets[i] + 1, corners.begin() + offsets[i + 1]);
+  const Index fixed = dimension == 1 ? 0 : 1;
+  std::reverse(corners.begin() + offsets[i] + fixed, corners.begin() + offsets[i + 1]);
 }
 
 FaceKey face_key(std::span<const Index> corners) {
@@ -75,19 +82,25 @@ FaceKey face_key(std::span<const Index> corners) {
 
 CanonicalFaces canonical_faces(const Faces& on_nodes, std::span<const Index> point_of_node) {
   CanonicalFaces result;
+  result.faces.dimension = on_nodes.dimension;
+  result.faces.plane_normal = on_nodes.plane_normal;
   const std::vector<Candidate> candidates = sorted_candidates(on_nodes, point_of_node);
+  std::vector<Index> kept, duplicates;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const Index face = candidates[i].face;
     if (i > 0 && candidates[i].key == candidates[i - 1].key) {
-      ++result.n_duplicates;
+      duplicates.push_back(on_nodes.file_order[face]);
       continue;
     }
-    const Index face = candidates[i].face;
+    kept.push_back(on_nodes.file_order[face]);
     Polygon polygon = without_repeated_neighbours(on_nodes.face(face), point_of_node);
     const auto begin = polygon.corners.begin();
     const auto end = begin + static_cast<std::ptrdiff_t>(polygon.n);
-    std::rotate(begin, std::min_element(begin, end), end);
+    if (on_nodes.dimension == 2) std::rotate(begin, std::min_element(begin, end), end);
     result.faces.add(polygon.span(), on_nodes.tags[face], on_nodes.file_order[face]);
   }
+  result.n_elements = n_distinct(std::move(kept));
+  result.n_duplicates = n_distinct(std::move(duplicates));
   return result;
 }
 

@@ -11,18 +11,22 @@
 
 namespace roughmesh::detail {
 
-/// Polygons of three or four corners, stored one after the other.
+/// Polygons of three or four corners, or lines in a plane, stored one after the other.
 struct Faces {
+  int dimension = 2;                 ///< 1 for lines
+  Vec3 plane_normal = Vec3::Zero();  ///< of the plane of lines
   std::vector<Index> offsets = {0};  ///< n + 1 positions in corners
   std::vector<Index> corners;
   std::vector<Tag> tags;          ///< n element numbers; 0 for derived boundary faces
-  std::vector<Index> file_order;  ///< n positions in the order of the file
+  /// n numbers of their elements, counted in the order of the file; the facets of one element of
+  /// order 2 have the same.
+  std::vector<Index> file_order;
 
   Index size() const { return static_cast<Index>(tags.size()); }
   std::span<const Index> face(Index i) const {
     return {corners.data() + offsets[i], static_cast<std::size_t>(offsets[i + 1] - offsets[i])};
   }
-  void turn(Index i);  ///< look the other way; the first corner stays first
+  void turn(Index i);  ///< look the other way; the first corner of a polygon stays first
   void add(std::span<const Index> face_corners, Tag tag, Index order);
 };
 
@@ -32,23 +36,26 @@ struct ChosenFaces {
   std::vector<std::string> groups;
 };
 
-/// The elements of dimension 2 in the groups, or the derived boundary of the volume.
+/// The elements of codimension 1 in the groups, or the derived boundary of the volume, those of
+/// order 2 as their facets.
 /// @throws InputError  as select_surface
 ChosenFaces choose_faces(const Mesh& mesh, std::span<const std::string> groups);
 
 /// Faces on points in canonical order, which depends on positions only.
 struct CanonicalFaces {
   Faces faces;
-  Index n_duplicates = 0;
+  Index n_elements = 0;    ///< elements they come from
+  Index n_duplicates = 0;  ///< elements of faces that stand on the points of an earlier one
 };
 
-/// Each face starts at its smallest point; faces stand in the order of their sorted points.
-/// Neighbouring corners at one point become one corner; a face left with fewer than three distinct
-/// points has no area and is dropped. Of faces on the same points the first in the file stays.
+/// Each polygon starts at its smallest point, lines keep their direction; faces stand in the order
+/// of their sorted points. Neighbouring corners at one point become one corner; a face left with
+/// fewer than three distinct points, a line with fewer than two, is dropped. Of faces on the same
+/// points the first in the file stays.
 /// @param point_of_node  for every mesh node, its point or -1
 CanonicalFaces canonical_faces(const Faces& on_nodes, std::span<const Index> point_of_node);
 
-/// Sorted corners; the fourth of a triangle is the largest Index.
+/// Sorted corners; the fourth of a triangle, the third and fourth of a line are the largest Index.
 using FaceKey = std::array<Index, 4>;
 
 FaceKey face_key(std::span<const Index> corners);

@@ -26,13 +26,33 @@ struct VectorSum {
     sum += v;
     magnitude += v.norm();
   }
+  void add(const VectorSum& more) {
+    sum += more.sum;
+    magnitude += more.magnitude;
+  }
   bool has_direction() const { return sum.norm() > least_sum * magnitude; }
 };
+
+Vec3 vector_of_face(const Surface& surface, Index face) {
+  return face_vector(gather(surface.face(face), surface.points).span(), surface.plane_normal);
+}
 
 // Contribution of one corner with the edges that leave it, next and previous (docs/math.md, eq. 2).
 Vec3 max_weighted_normal(const Vec3& next, const Vec3& previous) {
   const double squares = next.squaredNorm() * previous.squaredNorm();
   return squares > 0 ? Vec3(next.cross(previous) / squares) : Vec3::Zero();
+}
+
+// Normal of each line over its length (docs/math.md, eq. 35).
+std::vector<VectorSum> curve_sums(const Surface& surface) {
+  std::vector<VectorSum> sums(surface.points.size());
+  for (Index f = 0; f < surface.n_faces(); ++f) {
+    const Vec3 normal = vector_of_face(surface, f);
+    const double square = normal.squaredNorm();
+    if (!(square > 0)) continue;
+    for (const Index point : surface.face(f)) sums[point].add(normal / square);
+  }
+  return sums;
 }
 
 std::vector<VectorSum> max_sums(const Surface& surface) {
@@ -52,7 +72,7 @@ std::vector<VectorSum> max_sums(const Surface& surface) {
 std::vector<VectorSum> area_sums(const Surface& surface) {
   std::vector<VectorSum> sums(surface.points.size());
   for (Index f = 0; f < surface.n_faces(); ++f) {
-    const Vec3 vector = area_vector(gather(surface.face(f), surface.points).span());
+    const Vec3 vector = vector_of_face(surface, f);
     for (const Index point : surface.face(f)) sums[point].add(vector);
   }
   return sums;
@@ -62,9 +82,19 @@ std::vector<VectorSum> area_sums(const Surface& surface) {
   const auto at = std::find(surface.point_of_node.begin(), surface.point_of_node.end(), point);
   const Index node = surface.nodes[at - surface.point_of_node.begin()];
   throw InputError(
-      fmt::format("node {} at {} has no normal: its faces have no area or cancel each other; mend "
-                  "the mesh there",
-                  mesh.node_tags[node], place(surface.points[point])));
+      fmt::format("node {} at {} has no normal: its {} or cancel each other; mend the mesh there",
+                  mesh.node_tags[node], place(surface.points[point]),
+                  surface.dimension == 1 ? "lines have no length" : "faces have no area"));
+}
+
+// What the points of each group have together, at each of them.
+std::vector<VectorSum> shared_sums(const std::vector<VectorSum>& own,
+                                   std::span<const Index> sharer) {
+  std::vector<VectorSum> sums(own.size());
+  for (std::size_t i = 0; i < own.size(); ++i) sums[sharer[i]].add(own[i]);
+  for (std::size_t i = 0; i < own.size(); ++i)
+    if (sharer[i] != static_cast<Index>(i)) sums[i] = sums[sharer[i]];
+  return sums;
 }
 
 double longest_edge(const Corners& corners) {
@@ -81,9 +111,10 @@ std::vector<Vec3> face_vectors(const Surface& surface) {
   vectors.reserve(surface.face_tags.size());
   for (Index f = 0; f < surface.n_faces(); ++f) {
     const Corners corners = gather(surface.face(f), surface.points);
-    const Vec3 vector = area_vector(corners.span());
+    const Vec3 vector = vector_of_face(surface, f);
     const double longest = longest_edge(corners);
-    vectors.push_back(vector.norm() > least_area * longest * longest ? vector : Vec3::Zero());
+    const double least = surface.dimension == 1 ? 0 : least_area * longest * longest;
+    vectors.push_back(vector.norm() > least ? vector : Vec3::Zero());
   }
   return vectors;
 }
@@ -93,10 +124,20 @@ bool is_sharp(const Vec3& a, const Vec3& b, double sharp_angle) {
   return std::atan2(a.cross(b).norm(), a.dot(b)) > sharp_angle;
 }
 
-MeshSize mesh_size(const EdgeTable& edges, std::span<const Vec3> points) {
+std::vector<double> edge_lengths(const EdgeTable& edges, const Surface& surface) {
   std::vector<double> lengths;
+  if (surface.dimension == 1) {
+    for (Index f = 0; f < surface.n_faces(); ++f)
+      lengths.push_back(face_area(gather(surface.face(f), surface.points).span()));
+    return lengths;
+  }
   lengths.reserve(edges.points.size());
-  for (const auto& [a, b] : edges.points) lengths.push_back((points[b] - points[a]).norm());
+  for (const auto& [a, b] : edges.points)
+    lengths.push_back((surface.points[b] - surface.points[a]).norm());
+  return lengths;
+}
+
+MeshSize mesh_size(std::vector<double> lengths) {
   const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
   std::nth_element(lengths.begin(), middle, lengths.end());
   return {*std::min_element(lengths.begin(), middle + 1), *middle,
@@ -110,14 +151,15 @@ void measure_areas(Surface& surface) {
   surface.area = 0;
   for (Index f = 0; f < surface.n_faces(); ++f) {
     const auto face = surface.face(f);
-    const double area = polygon_area(gather(face, surface.points).span());
+    const double area = face_area(gather(face, surface.points).span());
     surface.area += area;
     for (const Index point : face) surface.areas[point] += area / static_cast<double>(face.size());
   }
 }
 
 void measure_normals(const Mesh& mesh, Surface& surface) {
-  const std::vector<VectorSum> sums = max_sums(surface);
+  const std::vector<VectorSum> sums =
+      surface.dimension == 1 ? curve_sums(surface) : max_sums(surface);
   std::vector<VectorSum> fallback;
   surface.normals.resize(surface.points.size());
   for (Index point = 0; point < surface.n_points(); ++point) {
@@ -127,6 +169,26 @@ void measure_normals(const Mesh& mesh, Surface& surface) {
       sum = &fallback[point];
     }
     if (!sum->has_direction()) refuse_point(mesh, surface, point);
+    surface.normals[point] = sum->sum / sum->sum.norm();
+  }
+}
+
+void measure_shared_normals(Surface& surface, std::span<const Index> sharer) {
+  if (surface.dimension != 2)
+    throw InputError("periodic partners of lines have no common normals; choose faces");
+  const std::vector<VectorSum> sums = shared_sums(max_sums(surface), sharer);
+  std::vector<VectorSum> fallback;
+  for (Index point = 0; point < surface.n_points(); ++point) {
+    const VectorSum* sum = &sums[point];
+    if (!sum->has_direction()) {
+      if (fallback.empty()) fallback = shared_sums(area_sums(surface), sharer);
+      sum = &fallback[point];
+    }
+    if (!sum->has_direction())
+      throw InputError(
+          fmt::format("the faces at {} and at its periodic images cancel each other: no normal is "
+                      "common to them; choose the faces of one side",
+                      place(surface.points[point])));
     surface.normals[point] = sum->sum / sum->sum.norm();
   }
 }
@@ -142,7 +204,7 @@ void measure_edges(const EdgeTable& edges, double sharp_angle, Surface& surface)
     else if (is_sharp(vectors[sides[0].face], vectors[sides[1].face], sharp_angle))
       ++surface.n_sharp_edges;
   }
-  surface.mesh_size = mesh_size(edges, surface.points);
+  surface.mesh_size = mesh_size(edge_lengths(edges, surface));
 }
 
 }  // namespace roughmesh::detail

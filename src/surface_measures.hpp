@@ -2,6 +2,8 @@
 // What is measured on an oriented surface.
 #pragma once
 
+#include <span>
+
 #include "roughmesh/surface.hpp"
 
 #include "surface_edges.hpp"
@@ -11,9 +13,15 @@ namespace roughmesh::detail {
 /// Fills `areas` and `area`.
 void measure_areas(Surface& surface);
 
-/// Fills `normals` with Max's weights (docs/math.md, eq. 2).
+/// Fills `normals` (docs/math.md, eq. 2; of a curve, eq. 35).
 /// @throws InputError  a point all of whose faces have no area or cancel
 void measure_normals(const Mesh& mesh, Surface& surface);
+
+/// Fills `normals` where groups of points share one: from the faces of all of them together, each
+/// point being sorted to point `sharer[i]` (docs/math.md, eq. 31). For faces of three and more
+/// corners.
+/// @throws InputError  points whose faces cancel; lines
+void measure_shared_normals(Surface& surface, std::span<const Index> sharer);
 
 /// Fills `mesh_size` and the counts of edges.
 void measure_edges(const EdgeTable& edges, double sharp_angle, Surface& surface);

@@ -97,7 +97,7 @@ void keep_orientation_of_file(const WeldedPoints& welded, const Faces& faces, Pa
   std::vector<FileOrientation> in_file(static_cast<std::size_t>(patches.n));
   for (Index face = 0; face < faces.size(); ++face) {
     FileOrientation& patch = in_file[patches.of_face[face]];
-    const double area = polygon_area(gather(faces.face(face), welded.points).span());
+    const double area = face_area(gather(faces.face(face), welded.points).span());
     patch.area += area;
     patch.as_given += patches.turned[face] ? -area : area;
     if (patch.first < 0 || faces.file_order[face] < faces.file_order[patch.first])
@@ -152,13 +152,13 @@ std::vector<double> patch_volumes(const WeldedPoints& welded, const Faces& faces
   for (Index face = 0; face < faces.size(); ++face) {
     const Index patch = patches.of_face[face];
     const Corners corners = gather(faces.face(face), welded.points);
-    const double volume = cone_volume(corners.span(), centres[patch]);
+    const double volume = cone_volume(corners.span(), centres[patch], faces.plane_normal);
     volumes[patch] += patches.turned[face] ? -volume : volume;
   }
   return volumes;
 }
 
-// Entities of the volume elements on either side of a face, seen along its corners as given.
+// Entities of the elements (of a curve: of the plane) on either side of a face, seen along its corners as given.
 struct Neighbours {
   std::optional<Tag> behind, ahead;
 
@@ -171,22 +171,42 @@ struct Neighbours {
   }
 };
 
+struct FacetPoints {
+  std::array<Index, 4> points{};
+  std::size_t n = 0;
+
+  std::span<const Index> span() const { return {points.data(), n}; }
+};
+
+// Points of a facet of a side of a cell, -1 where the selection has none.
+FacetPoints facet_points(const CellFace& side, std::span<const int> facet, const WeldedPoints& welded) {
+  FacetPoints result;
+  for (const int k : facet) result.points[result.n++] = welded.point_of_node[side.nodes[k]];
+  return result;
+}
+
+Vec3 middle_of_corners(const Mesh& mesh, const ElementBlock& block, Index element) {
+  Vec3 middle = Vec3::Zero();
+  const int n = n_corners(block.type.shape);
+  for (int corner = 0; corner < n; ++corner)
+    middle += mesh.nodes[block.element(element)[corner]] / n;
+  return middle;
+}
+
 void note_neighbours(const Mesh& mesh, const ElementBlock& block, Index element,
                      const WeldedPoints& welded, const FaceLookup& lookup, const Faces& faces,
                      std::vector<Neighbours>& neighbours) {
   for (std::size_t f = 0; f < local_faces(block.type.shape).size(); ++f) {
-    VolumeFace face = volume_face(block, element, f);
-    for (Index& node : face.nodes) node = welded.point_of_node[node];
-    const Index number = lookup.find(face.corners());
-    if (number < 0) continue;
-    Vec3 middle = Vec3::Zero();
-    const int n = n_corners(block.type.shape);
-    for (int corner = 0; corner < n; ++corner)
-      middle += mesh.nodes[block.element(element)[corner]] / n;
-    const Corners corners = gather(faces.face(number), welded.points);
-    const Vec3 inward = middle - centroid(welded, faces.face(number));
-    const bool ahead = area_vector(corners.span()).dot(inward) > 0;
-    (ahead ? neighbours[number].ahead : neighbours[number].behind) = block.entity;
+    const CellFace side = cell_face(block, element, f);
+    for (const std::vector<int>& facet : facets(side.type)) {
+      const Index number = lookup.find(facet_points(side, facet, welded).span());
+      if (number < 0) continue;
+      const Corners corners = gather(faces.face(number), welded.points);
+      const Vec3 inward =
+          middle_of_corners(mesh, block, element) - centroid(welded, faces.face(number));
+      const bool ahead = face_vector(corners.span(), faces.plane_normal).dot(inward) > 0;
+      (ahead ? neighbours[number].ahead : neighbours[number].behind) = block.entity;
+    }
   }
 }
 
@@ -196,7 +216,7 @@ std::vector<std::int64_t> votes_of_volumes(const Mesh& mesh, const WeldedPoints&
   const FaceLookup lookup(faces.offsets, faces.corners);
   std::vector<Neighbours> neighbours(faces.tags.size());
   for (const ElementBlock& block : mesh.blocks)
-    for (Index e = 0; e < block.size(); ++e)
+    for (Index e = 0; dimension(block.type.shape) == faces.dimension + 1 && e < block.size(); ++e)
       note_neighbours(mesh, block, e, welded, lookup, faces, neighbours);
   std::vector<std::int64_t> votes(static_cast<std::size_t>(patches.n), 0);
   for (std::size_t face = 0; face < neighbours.size(); ++face) {

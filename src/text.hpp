@@ -8,7 +8,8 @@
 
 namespace roughmesh::detail {
 
-std::string_view trimmed(std::string_view text);             ///< without space around it
+bool equal_ignoring_case(std::string_view a, std::string_view b);  ///< of ASCII letters
+std::string_view trimmed(std::string_view text);                   ///< without space at its ends
 std::vector<std::string_view> words(std::string_view line);  ///< what stands between spaces
 std::string upper(std::string_view text);                    ///< a to z in capitals
 

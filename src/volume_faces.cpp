@@ -18,9 +18,10 @@ struct FaceRef {
 };
 
 template <class Visit>
-void for_each_face(const Mesh& mesh, Visit&& visit) {
+void for_each_face(const Mesh& mesh, int cell_dimension, Visit&& visit) {
   for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
     const ElementBlock& block = mesh.blocks[b];
+    if (dimension(block.type.shape) != cell_dimension) continue;
     const std::size_t n_faces = local_faces(block.type.shape).size();
     for (Index e = 0; e < block.size(); ++e)
       for (std::size_t f = 0; f < n_faces; ++f)
@@ -28,12 +29,12 @@ void for_each_face(const Mesh& mesh, Visit&& visit) {
   }
 }
 
-VolumeFace resolve(const Mesh& mesh, const FaceRef& ref) {
-  return volume_face(mesh.blocks[ref.block], ref.element, ref.face);
+CellFace resolve(const Mesh& mesh, const FaceRef& ref) {
+  return cell_face(mesh.blocks[ref.block], ref.element, ref.face);
 }
 
 Index smallest_node(const Mesh& mesh, const FaceRef& ref) {
-  const VolumeFace face = resolve(mesh, ref);
+  const CellFace face = resolve(mesh, ref);
   const auto corners = face.corners();
   return *std::min_element(corners.begin(), corners.end());
 }
@@ -45,15 +46,16 @@ struct Buckets {
   std::vector<FaceRef> faces;
 };
 
-Buckets make_buckets(const Mesh& mesh) {
+Buckets make_buckets(const Mesh& mesh, int cell_dimension) {
   Buckets buckets;
   buckets.offsets.assign(mesh.nodes.size() + 1, 0);
-  for_each_face(mesh, [&](const FaceRef& ref) { ++buckets.offsets[smallest_node(mesh, ref) + 1]; });
+  for_each_face(mesh, cell_dimension,
+                [&](const FaceRef& ref) { ++buckets.offsets[smallest_node(mesh, ref) + 1]; });
   for (std::size_t i = 1; i < buckets.offsets.size(); ++i)
     buckets.offsets[i] += buckets.offsets[i - 1];
   buckets.faces.resize(buckets.offsets.back());
   std::vector<std::size_t> next(buckets.offsets.begin(), buckets.offsets.end() - 1);
-  for_each_face(mesh,
+  for_each_face(mesh, cell_dimension,
                 [&](const FaceRef& ref) { buckets.faces[next[smallest_node(mesh, ref)]++] = ref; });
   return buckets;
 }
@@ -77,7 +79,7 @@ bool is_repetition(const Mesh& mesh, const FaceRef& a, const FaceRef& b) {
 }
 
 void append_single_faces(const Mesh& mesh, std::span<const FaceRef> bucket,
-                         std::vector<KeyedFace>& scratch, std::vector<VolumeFace>& out) {
+                         std::vector<KeyedFace>& scratch, std::vector<CellFace>& out) {
   scratch.clear();
   for (const FaceRef& ref : bucket)
     scratch.push_back({face_key(resolve(mesh, ref).corners()), ref});
@@ -95,18 +97,18 @@ void append_single_faces(const Mesh& mesh, std::span<const FaceRef> bucket,
 
 }  // namespace
 
-VolumeFace volume_face(const ElementBlock& block, Index element, std::size_t face) {
-  const std::vector<int>& local = local_faces(block.type.shape)[face];
+CellFace cell_face(const ElementBlock& block, Index element, std::size_t face) {
+  const LocalFace& local = element_faces(block.type)[face];
   const auto nodes = block.element(element);
-  VolumeFace result;
-  for (const int corner : local) result.nodes[result.n_nodes++] = nodes[corner];
+  CellFace result{local.type, {}};
+  for (int k = 0; k < local.type.n_nodes; ++k) result.nodes[k] = nodes[local.nodes[k]];
   return result;
 }
 
-std::vector<VolumeFace> boundary_faces(const Mesh& mesh) {
-  const Buckets buckets = make_buckets(mesh);
+std::vector<CellFace> boundary_faces(const Mesh& mesh, int cell_dimension) {
+  const Buckets buckets = make_buckets(mesh, cell_dimension);
   constexpr std::size_t grain = 8192;
-  std::vector<std::vector<VolumeFace>> parts((mesh.nodes.size() + grain - 1) / grain);
+  std::vector<std::vector<CellFace>> parts((mesh.nodes.size() + grain - 1) / grain);
   parallel_for(mesh.nodes.size(), grain, [&](std::size_t begin, std::size_t end) {
     std::vector<KeyedFace> scratch;
     for (std::size_t node = begin; node < end; ++node) {
@@ -115,8 +117,8 @@ std::vector<VolumeFace> boundary_faces(const Mesh& mesh) {
                           scratch, parts[begin / grain]);
     }
   });
-  std::vector<VolumeFace> faces;
-  for (const std::vector<VolumeFace>& part : parts)
+  std::vector<CellFace> faces;
+  for (const std::vector<CellFace>& part : parts)
     faces.insert(faces.end(), part.begin(), part.end());
   return faces;
 }

@@ -1,29 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Faces of volume elements.
+// Faces of volume elements, and lines around the elements of a planar mesh.
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "roughmesh/mesh.hpp"
 
+#include "element_nodes.hpp"
+
 namespace roughmesh::detail {
 
-/// A face by its corner nodes, ordered as in local_faces.
-struct VolumeFace {
-  std::array<Index, 4> nodes{};
-  std::uint8_t n_nodes = 0;
+/// A side of an element, its corners ordered as in local_faces.
+struct CellFace {
+  ElementType type;  ///< of order 1 for a side of an element of order above 2
+  std::array<Index, most_face_nodes> nodes{};
 
-  std::span<const Index> corners() const { return {nodes.data(), n_nodes}; }
+  std::span<const Index> corners() const {
+    return {nodes.data(), static_cast<std::size_t>(n_corners(type.shape))};
+  }
+  std::span<const Index> all() const {
+    return {nodes.data(), static_cast<std::size_t>(type.n_nodes)};
+  }
 };
 
-/// Face `face` of an element.
-VolumeFace volume_face(const ElementBlock& block, Index element, std::size_t face);
+/// Side `face` of an element.
+CellFace cell_face(const ElementBlock& block, Index element, std::size_t face);
 
-/// Faces that belong to exactly one volume element, by their nodes; in the order of their smallest
-/// node, then of their other nodes. Elements with the same corners are one.
-std::vector<VolumeFace> boundary_faces(const Mesh& mesh);
+/// Sides that belong to exactly one of the elements of dimension `cell_dimension`, by their corners;
+/// in the order of their smallest node, then of their other nodes. Elements with the same corners
+/// are one.
+std::vector<CellFace> boundary_faces(const Mesh& mesh, int cell_dimension);
 
 }  // namespace roughmesh::detail

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "warnings.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -8,67 +9,104 @@
 #include "roughmesh/mesh_io.hpp"
 
 namespace roughmesh::detail {
+namespace {
 
-void warn_of_surface(Report& report, const Surface& surface) {
-  if (surface.n_sharp_edges > 0)
-    report.warnings.push_back(fmt::format(
-        "{} sharp edges (more than {:g} degrees): their nodes move along averaged normals, which "
-        "lowers the roughness there; round the edges for exact statistics",
-        surface.n_sharp_edges, report.request.edge_angle));
-  if (surface.n_nonmanifold_edges > 0)
-    report.warnings.push_back(fmt::format(
-        "{} edges join three or more faces: normals along them are a compromise; choose one "
-        "--group at a time",
-        surface.n_nonmanifold_edges));
-  if (surface.n_coincident_nodes > 0)
-    report.warnings.push_back(fmt::format(
-        "{} nodes lie where nodes of the rough surface lie, but on none of its faces; they stay, "
-        "so "
-        "a gap opens or closes there; choose the faces of both sides if they belong together",
-        surface.n_coincident_nodes));
-  if (surface.n_duplicate_faces > 0)
-    report.warnings.push_back(fmt::format(
-        "{} faces stand on the nodes of another one and count once", surface.n_duplicate_faces));
+/// Names the surface where there are several.
+void warn(Report& report, const std::vector<std::string>& groups, const std::string& text) {
+  const bool is_alone = report.request.surfaces.size() == 1;
+  std::string warning =
+      is_alone ? text : fmt::format("surface {}: {}", fmt::join(groups, ", "), text);
+  if (std::find(report.warnings.begin(), report.warnings.end(), warning) == report.warnings.end())
+    report.warnings.push_back(std::move(warning));
 }
 
-void warn_of_scale(Report& report, const Mesh& mesh, const Surface& surface) {
-  const double rq = report.request.rms;
-  for (std::string& warning : resolution_warnings(report.resolution, rq))
-    report.warnings.push_back(std::move(warning));
+/// What a surface is made of.
+struct Words {
+  const char* faces;
+  const char* edges;
+};
+
+Words words_for(const Surface& surface) {
+  return surface.dimension == 1 ? Words{"lines", "corners"} : Words{"faces", "edges"};
+}
+
+void warn_of_field(Report& report, const SurfaceReport& surface) {
+  if (surface.audit.covariance_error > report.request.tolerance)
+    warn(report, surface.groups,
+         fmt::format("audited covariance error {:.3g} is above the tolerance {:g}",
+                     surface.audit.covariance_error, report.request.tolerance));
+  if (surface.field.variance_change > 1e-3)
+    warn(report, surface.groups,
+         fmt::format("this autocorrelation is not positive definite for this distance: {} negative "
+                     "eigenvalues were set to zero, which changes variances by up to {:.3g}; use a "
+                     "shorter length or --distance euclidean",
+                     surface.field.negative_eigenvalues, surface.field.variance_change));
+}
+
+}  // namespace
+
+void warn_of_surface(Report& report, const Surface& surface, const Roughness& request) {
+  const Words words = words_for(surface);
+  if (surface.n_sharp_edges > 0)
+    warn(report, surface.groups,
+         fmt::format("{} sharp {} (more than {:g} degrees): their nodes move along averaged "
+                     "normals, which lowers the roughness there; round them for exact statistics",
+                     surface.n_sharp_edges, words.edges, request.edge_angle));
+  if (surface.n_nonmanifold_edges > 0)
+    warn(report, surface.groups,
+         fmt::format("{} {} join three or more {}: normals there are a compromise; choose one "
+                     "--group at a time",
+                     surface.n_nonmanifold_edges, words.edges, words.faces));
+  if (surface.n_coincident_nodes > 0)
+    warn(report, surface.groups,
+         fmt::format("{} nodes lie where nodes of the rough surface lie, but on none of its {}; "
+                     "they stay, so a gap opens or closes there; choose the {} of both sides if "
+                     "they belong together",
+                     surface.n_coincident_nodes, words.faces, words.faces));
+  if (surface.n_duplicate_faces > 0)
+    warn(report, surface.groups,
+         fmt::format("{} {} stand on the nodes of another one and count once",
+                     surface.n_duplicate_faces, words.faces));
+}
+
+void warn_of_scale(Report& report, const Mesh& mesh, const SurfaceReport& surface,
+                   const Roughness& request) {
+  const double rq = request.rms;
+  for (const std::string& text : resolution_warnings(surface.resolution, rq))
+    warn(report, surface.groups, text);
   const double spacing = coordinate_spacing(mesh);
   if (rq < 1000 * spacing)
-    report.warnings.push_back(fmt::format(
-        "--rms {:g} is only {:.3g} spacings of the numbers the file can hold ({:.3g}): heights "
-        "are rounded; use a file with more digits",
-        rq, rq / spacing, spacing));
+    warn(report, surface.groups,
+         fmt::format("--rms {:g} is only {:.3g} spacings of the numbers the file can hold ({:.3g}): "
+                     "heights are rounded; use a file with more digits",
+                     rq, rq / spacing, spacing));
   const double h = surface.mesh_size.median;
   if (rq < 1e-6 * h)
-    report.warnings.push_back(
-        fmt::format("--rms {:g} is {:.1e} of the mesh size {:.3g}; check the unit", rq, rq / h, h));
-  const double size = std::sqrt(surface.area);
-  const double length = report.lengths.formula;
+    warn(report, surface.groups,
+         fmt::format("--rms {:g} is {:.1e} of the mesh size {:.3g}; check the unit", rq, rq / h, h));
+  const double size = surface.dimension == 1 ? surface.area : std::sqrt(surface.area);
+  const double length = surface.lengths.one_over_e;
   if (length < 1e-2 * h)
-    report.warnings.push_back(
-        fmt::format("correlation length {:g} is {:.1e} of the mesh size {:.3g}; check the unit",
-                    length, length / h, h));
+    warn(report, surface.groups,
+         fmt::format("correlation length {:g} is {:.1e} of the mesh size {:.3g}; check the unit",
+                     length, length / h, h));
   if (length > size)
-    report.warnings.push_back(fmt::format(
-        "correlation length {:g} is larger than the surface (square root of its area {:.3g}): it "
-        "moves nearly as a whole; check the unit",
-        length, size));
+    warn(report, surface.groups,
+         fmt::format("correlation length {:g} is larger than the surface (its size is {:.3g}): it "
+                     "moves nearly as a whole; check the unit",
+                     length, size));
 }
 
-void warn_of_field(Report& report) {
-  if (report.audit.covariance_error > report.request.tolerance)
-    report.warnings.push_back(
-        fmt::format("audited covariance error {:.3g} is above the tolerance {:g}",
-                    report.audit.covariance_error, report.request.tolerance));
-  if (report.field.variance_change > 1e-3)
+void warn_of_fields(Report& report) {
+  for (const SurfaceReport& surface : report.surfaces) warn_of_field(report, surface);
+}
+
+void warn_of_curved_elements(Report& report, const MeshCheck& check) {
+  if (check.n_curved > 0)
     report.warnings.push_back(fmt::format(
-        "this autocorrelation is not positive definite for this distance: {} negative "
-        "eigenvalues were set to zero, which changes variances by up to {:.3g}; use a shorter "
-        "length or --distance euclidean",
-        report.field.negative_eigenvalues, report.field.variance_change));
+        "{} curved elements were checked at their corners only; look at them with the checks of "
+        "your solver, or use linear elements",
+        check.n_curved));
 }
 
 void warn_of_walls(Report& report, const VolumeMover& mover) {
@@ -76,7 +114,7 @@ void warn_of_walls(Report& report, const VolumeMover& mover) {
     report.warnings.push_back(fmt::format(
         "{} nodes of the rough surface lie on faces that are not roughened; they move along the "
         "normals of the rough surface while the other nodes of those faces stay, so elements there "
-        "invert first",
+        "invert first; --fade lets the roughness end before",
         mover.n_wall_nodes()));
 }
 

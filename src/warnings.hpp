@@ -2,6 +2,7 @@
 // What a run tells its user without being asked: one line each, into report.warnings.
 #pragma once
 
+#include "roughmesh/check.hpp"
 #include "roughmesh/mesh.hpp"
 #include "roughmesh/move_volume.hpp"
 #include "roughmesh/report.hpp"
@@ -10,16 +11,21 @@
 namespace roughmesh::detail {
 
 /// Sharp edges, edges of many faces, faces that count once.
-void warn_of_surface(Report& report, const Surface& surface);
+void warn_of_surface(Report& report, const Surface& surface, const Roughness& request);
 
-/// Roughness that the mesh, the numbers of its file or its size cannot carry; report.resolution is
+/// Roughness that the mesh, the numbers of its file or its size cannot carry; surface.resolution is
 /// set.
-void warn_of_scale(Report& report, const Mesh& mesh, const Surface& surface);
+void warn_of_scale(Report& report, const Mesh& mesh, const SurfaceReport& surface,
+                   const Roughness& request);
 
-/// A covariance beyond the tolerance, clipped eigenvalues; report.audit and report.field are set.
-void warn_of_field(Report& report);
+/// Covariances beyond the tolerance, clipped eigenvalues; audit and field of report.surfaces are
+/// set.
+void warn_of_fields(Report& report);
 
-/// Nodes of the surface on faces that stay.
+/// Elements that were checked at their corners only.
+void warn_of_curved_elements(Report& report, const MeshCheck& check);
+
+/// Nodes of the surfaces on faces that stay.
 void warn_of_walls(Report& report, const VolumeMover& mover);
 
 }  // namespace roughmesh::detail

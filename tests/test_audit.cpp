@@ -44,12 +44,12 @@ std::vector<Index> identity_order(std::size_t n) {
 TEST(AuditedPairs, AreAllPairsOfAFewPoints) {
   std::vector<Vec3> points;
   for (int i = 0; i < 141; ++i) points.emplace_back(i, 0, 0);  // 141 * 140 / 2 = 9,870
-  const auto pairs = audited_pairs(points, Distance::euclidean());
+  const auto pairs = audited_pairs(Correlation(points, exponential, Distance::euclidean()));
   EXPECT_EQ(pairs.size(), 9870u);
   EXPECT_EQ(std::set(pairs.begin(), pairs.end()).size(), 9870u);
   for (const auto& [i, j] : pairs) EXPECT_LT(i, j);
   points.resize(1);
-  EXPECT_TRUE(audited_pairs(points, Distance::euclidean()).empty());
+  EXPECT_TRUE(audited_pairs(Correlation(points, exponential, Distance::euclidean())).empty());
 }
 
 // Half of the 50 strata, in which a pair is sought for each of 196 points, lie between a mesh size
@@ -58,7 +58,7 @@ TEST(AuditedPairs, CoverEveryDistanceFromTheShortestUp) {
   const std::vector<Vec3> points = sphere_points(3);
   for (const Distance& distance :
        {Distance::euclidean(), Distance::great_circle(Sphere{Vec3::Zero(), 1.0, 0.0})}) {
-    const auto pairs = audited_pairs(points, distance);
+    const auto pairs = audited_pairs(Correlation(points, exponential, distance));
     EXPECT_GT(pairs.size(), 3000u);
     EXPECT_LE(pairs.size(), 10'000u);
     double shortest = 10, largest = 0;
@@ -84,7 +84,7 @@ TEST(AuditedPairs, HoldTheClosestPairOfAGradedMesh) {
   for (const std::size_t near : {0, 1000, 2561}) {
     std::vector<Vec3> points = sphere_points(4);
     points.push_back(points[near] + Vec3(3e-5, 1e-5, 2e-5));
-    const auto pairs = audited_pairs(points, Distance::euclidean());
+    const auto pairs = audited_pairs(Correlation(points, exponential, Distance::euclidean()));
     const std::vector<double> r = distances(pairs, points, Distance::euclidean());
     EXPECT_LT(*std::min_element(r.begin(), r.end()), 1e-4) << near;
   }
@@ -92,7 +92,7 @@ TEST(AuditedPairs, HoldTheClosestPairOfAGradedMesh) {
 
 TEST(AuditedPairs, AreFewForManyPointsToo) {
   const std::vector<Vec3> points = test::plate(150).nodes;
-  EXPECT_LE(audited_pairs(points, Distance::euclidean()).size(), 10'000u);
+  EXPECT_LE(audited_pairs(Correlation(points, exponential, Distance::euclidean())).size(), 10'000u);
 }
 
 // Streaks: two of three lengths infinite, so that most points are at distance 0 of some other.
@@ -100,10 +100,10 @@ TEST(AuditedPairs, BearPointsAtDistanceZero) {
   const double inf = std::numeric_limits<double>::infinity();
   const std::vector<Vec3> points = test::plate(30).nodes;
   const Distance streaks = Distance::stretched({.lengths = {0.1, inf, inf}});
-  EXPECT_GT(audited_pairs(points, streaks).size(), 1000u);
+  EXPECT_GT(audited_pairs(Correlation(points, exponential, streaks)).size(), 1000u);
   std::vector<Vec3> column = points;
   for (Vec3& x : column) x[0] = 0;
-  EXPECT_FALSE(audited_pairs(column, streaks).empty());
+  EXPECT_FALSE(audited_pairs(Correlation(column, exponential, streaks)).empty());
 }
 
 // Uncorrelated heights, where an exponential was asked for: the error is rho at the shortest
@@ -112,9 +112,10 @@ TEST(Audit, SeesAMissingCorrelation) {
   const std::vector<Vec3> points = sphere_points(3);
   const Factor factor(identity(points.size()), identity_order(points.size()),
                       FactorShape::trapezoid);
-  const auto pairs = audited_pairs(points, Distance::euclidean());
+  const auto pairs = audited_pairs(Correlation(points, exponential, Distance::euclidean()));
   const std::vector<double> r = distances(pairs, points, Distance::euclidean());
-  const Audit audit = audit_covariance(factor, points, exponential, Distance::euclidean());
+  const Audit audit =
+      audit_covariance(factor, Correlation(points, exponential, Distance::euclidean()));
   EXPECT_DOUBLE_EQ(audit.covariance_error, exponential.rho(*std::min_element(r.begin(), r.end())));
   EXPECT_EQ(audit.n_pairs, static_cast<Index>(pairs.size()));
   EXPECT_EQ(audit.n_diagonal, static_cast<Index>(points.size()));
@@ -127,11 +128,13 @@ TEST(Audit, SeesOneRowThatIsTooLarge) {
   for (std::size_t i = 0; i < n; ++i) points.emplace_back(1000.0 * static_cast<double>(i), 0, 0);
   DenseMatrix columns = identity(n);
   const Factor right(identity(n), identity_order(n), FactorShape::trapezoid);
-  EXPECT_EQ(audit_covariance(right, points, exponential, Distance::euclidean()).covariance_error,
+  EXPECT_EQ(audit_covariance(right, Correlation(points, exponential, Distance::euclidean()))
+                .covariance_error,
             0);
   columns(row, row) *= 1.001;
   const Factor wrong(std::move(columns), identity_order(n), FactorShape::trapezoid);
-  EXPECT_NEAR(audit_covariance(wrong, points, exponential, Distance::euclidean()).covariance_error,
+  EXPECT_NEAR(audit_covariance(wrong, Correlation(points, exponential, Distance::euclidean()))
+                  .covariance_error,
               0.002001, 1e-12);
 }
 
@@ -140,7 +143,8 @@ TEST(Audit, DoesNotTakeANumberThatIsNoneForAgreement) {
   DenseMatrix columns = identity(points.size());
   columns(7, 3) = std::numeric_limits<double>::quiet_NaN();
   const Factor factor(std::move(columns), identity_order(points.size()), FactorShape::trapezoid);
-  EXPECT_EQ(audit_covariance(factor, points, exponential, Distance::euclidean()).covariance_error,
+  EXPECT_EQ(audit_covariance(factor, Correlation(points, exponential, Distance::euclidean()))
+                .covariance_error,
             std::numeric_limits<double>::infinity());
 }
 
@@ -150,9 +154,13 @@ TEST(Audit, SeesALengthThatWasNotAskedFor) {
   const Distance distance = Distance::euclidean();
   const Autocorrelation longer(
       {.family = Family::exponential, .length = 0.3 * std::numbers::sqrt2});
-  const PreparedField field = prepare_cholesky(autocorrelation_matrix(points, longer, distance));
-  EXPECT_LT(audit_covariance(field.factor, points, longer, distance).covariance_error, 1e-12);
-  EXPECT_GT(audit_covariance(field.factor, points, exponential, distance).covariance_error, 0.05);
+  const PreparedField field =
+      prepare_cholesky(autocorrelation_matrix(Correlation(points, longer, distance)));
+  EXPECT_LT(audit_covariance(field.factor, Correlation(points, longer, distance)).covariance_error,
+            1e-12);
+  EXPECT_GT(
+      audit_covariance(field.factor, Correlation(points, exponential, distance)).covariance_error,
+      0.05);
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ std::string message_of(const auto& work) {
 void expect_sample_covariance(const Autocorrelation& autocorrelation, const Distance& distance,
                               const std::vector<Vec3>& points, Factorization factorization) {
   constexpr std::uint64_t n_realizations = 4000;
-  const FieldSampler sampler(points, autocorrelation, distance);
+  const FieldSampler sampler(Correlation(points, autocorrelation, distance));
   ASSERT_EQ(sampler.summary().factorization, factorization);
   const auto n = static_cast<int>(points.size());
   Eigen::MatrixXd heights(n, static_cast<int>(n_realizations));
@@ -85,7 +85,7 @@ TEST(FieldSampler, MeanVolumeOfARoughSphereIsTheExactOne) {
   const double radius = 2, rq = 0.1;
   Mesh mesh = test::icosphere(2, radius);
   const Autocorrelation autocorrelation({.family = Family::gaussian, .length = 0.8});
-  const FieldSampler sampler(mesh.nodes, autocorrelation, Distance::euclidean());
+  const FieldSampler sampler(Correlation(mesh.nodes, autocorrelation, Distance::euclidean()));
   const ElementBlock& triangles = mesh.blocks.front();
   const auto cone = [&](Index t) {
     const auto node = triangles.element(t);
@@ -126,11 +126,11 @@ TEST(FieldSampler, MeanVolumeOfARoughSphereIsTheExactOne) {
 TEST(FieldSampler, RealizationIsTheSameAloneAndAmongOthers) {
   const std::vector<Vec3> points = sphere_points(3);
   for (const Autocorrelation& autocorrelation : {gaussian, exponential}) {
-    const FieldSampler among(points, autocorrelation, Distance::euclidean());
+    const FieldSampler among(Correlation(points, autocorrelation, Distance::euclidean()));
     std::vector<std::vector<double>> ten;
     for (std::uint64_t realization = 0; realization < 10; ++realization)
       ten.push_back(among.heights(1, realization));
-    const FieldSampler alone(points, autocorrelation, Distance::euclidean());
+    const FieldSampler alone(Correlation(points, autocorrelation, Distance::euclidean()));
     EXPECT_LT(largest_difference(alone.heights(1, 7), ten[7]), 1e-8);
     EXPECT_EQ(among.heights(1, 7), ten[7]);
     EXPECT_GT(largest_difference(ten[6], ten[7]), 0.1);
@@ -146,12 +146,12 @@ TEST(FieldSampler, HeightsDoNotDependOnTheNumberOfThreads) {
   const Autocorrelation wide({.family = Family::gaussian, .length = 1.0});  // eigenvalues
   const auto heights = [&](int n_threads, const Autocorrelation& autocorrelation) {
     const detail::ThreadLimit limit(n_threads);
-    return FieldSampler(points, autocorrelation, great_circle).heights(3, 1);
+    return FieldSampler(Correlation(points, autocorrelation, great_circle)).heights(3, 1);
   };
   for (const Autocorrelation& autocorrelation : {gaussian, exponential, wide})
     EXPECT_LT(largest_difference(heights(1, autocorrelation), heights(2, autocorrelation)), 1e-8);
 
-  const FieldSampler sampler(points, gaussian, great_circle);
+  const FieldSampler sampler(Correlation(points, gaussian, great_circle));
   const std::vector<double> on_all = sampler.heights(3, 1);
   const detail::ThreadLimit limit(1);
   EXPECT_EQ(sampler.heights(3, 1), on_all);
@@ -160,16 +160,16 @@ TEST(FieldSampler, HeightsDoNotDependOnTheNumberOfThreads) {
 // 1024 is a power of two, so that not even a bit of R changes.
 TEST(FieldSampler, HeightsScaleWithTheLengthUnit) {
   std::vector<Vec3> points = sphere_points(3);
-  const FieldSampler small(points, gaussian, Distance::euclidean());
+  const FieldSampler small(Correlation(points, gaussian, Distance::euclidean()));
   for (Vec3& x : points) x *= 1024;
   const Autocorrelation longer({.family = Family::gaussian, .length = 0.4 * 1024});
-  const FieldSampler large(points, longer, Distance::euclidean());
+  const FieldSampler large(Correlation(points, longer, Distance::euclidean()));
   EXPECT_LT(largest_difference(small.heights(0, 0), large.heights(0, 0)), 1e-8);
 }
 
 TEST(FieldSampler, CovarianceIsTheOneThatWasAskedFor) {
   const std::vector<Vec3> points = sphere_points(2);
-  const FieldSampler sampler(points, gaussian, Distance::euclidean());
+  const FieldSampler sampler(Correlation(points, gaussian, Distance::euclidean()));
   EXPECT_NEAR(sampler.covariance(3, 90), gaussian.rho((points[3] - points[90]).norm()), 2e-8);
   EXPECT_EQ(sampler.covariance(3, 90), sampler.covariance(90, 3));
   EXPECT_NEAR(sampler.covariance(5, 5), 1, 2e-8);
@@ -180,20 +180,20 @@ TEST(FieldSampler, CovarianceIsTheOneThatWasAskedFor) {
 // 1e-8 where pivoting stops; the clipping of eigenvalues is an error against the rho asked for.
 TEST(FieldSampler, AuditAndSummaryTellWhatTheFactorizationDid) {
   const std::vector<Vec3> points = sphere_points(3);
-  const FieldSampler plain(points, exponential, Distance::euclidean());
+  const FieldSampler plain(Correlation(points, exponential, Distance::euclidean()));
   EXPECT_EQ(plain.summary().factorization, Factorization::cholesky);
   EXPECT_EQ(plain.summary().rank, 642);
   EXPECT_LT(plain.audit().covariance_error, 1e-12);
   EXPECT_NEAR(plain.summary().smallest_correlation, exponential.rho(2), 1e-12);
 
-  const FieldSampler pivoted(points, gaussian, Distance::euclidean());
+  const FieldSampler pivoted(Correlation(points, gaussian, Distance::euclidean()));
   EXPECT_EQ(pivoted.summary().factorization, Factorization::pivoted_cholesky);
   EXPECT_LT(pivoted.summary().rank, 642);
   EXPECT_LT(pivoted.audit().covariance_error, 2e-8);
   EXPECT_GT(pivoted.citations().size(), plain.citations().size());
 
   const Autocorrelation wide({.family = Family::gaussian, .length = 1.0});
-  const FieldSampler clipped(points, wide, Distance::great_circle(points));
+  const FieldSampler clipped(Correlation(points, wide, Distance::great_circle(points)));
   EXPECT_EQ(clipped.summary().factorization, Factorization::eigenvalue);
   EXPECT_GE(clipped.audit().covariance_error, clipped.summary().variance_change - 1e-12);
   EXPECT_LE(clipped.audit().covariance_error, -*clipped.summary().smallest_eigenvalue + 1e-9);
@@ -201,7 +201,7 @@ TEST(FieldSampler, AuditAndSummaryTellWhatTheFactorizationDid) {
 
 TEST(FieldSampler, OneAndTwoPoints) {
   const std::vector<Vec3> one = {{1, 2, 3}};
-  const FieldSampler single(one, gaussian, Distance::euclidean());
+  const FieldSampler single(Correlation(one, gaussian, Distance::euclidean()));
   EXPECT_EQ(single.heights(4, 5), white_noise_sequence({4, 5}, 1));
   EXPECT_EQ(single.audit().n_pairs, 0);
   EXPECT_EQ(single.audit().covariance_error, 0);
@@ -209,7 +209,7 @@ TEST(FieldSampler, OneAndTwoPoints) {
 
   // d_0 = w_0, d_1 = rho w_0 + sqrt(1 - rho^2) w_1
   const std::vector<Vec3> two = {{0, 0, 0}, {0.4, 0, 0}};
-  const FieldSampler pair(two, exponential, Distance::euclidean());
+  const FieldSampler pair(Correlation(two, exponential, Distance::euclidean()));
   const double rho = std::exp(-1.0), w0 = white_noise({4, 5}, 0), w1 = white_noise({4, 5}, 1);
   EXPECT_NEAR(pair.heights(4, 5)[0], w0, 1e-14);
   EXPECT_NEAR(pair.heights(4, 5)[1], rho * w0 + std::sqrt(1 - rho * rho) * w1, 1e-14);
@@ -224,7 +224,7 @@ TEST(FieldSampler, InfiniteLengthMakesStreaks) {
   const double inf = std::numeric_limits<double>::infinity();
   const Distance streaks = Distance::stretched({.lengths = {0.1, inf, 1.0}});
   const Autocorrelation autocorrelation({.family = Family::exponential, .length = 0.1});
-  const FieldSampler sampler(points, autocorrelation, streaks);
+  const FieldSampler sampler(Correlation(points, autocorrelation, streaks));
   EXPECT_EQ(sampler.summary().rank, divisions + 1);
   const std::vector<double> d = sampler.heights(0, 0);
   for (std::size_t i = 1; i < points.size(); ++i)
@@ -235,9 +235,9 @@ TEST(FieldSampler, InfiniteLengthMakesStreaks) {
 }
 
 TEST(FieldSampler, RefusesMemoryThatIsNotThereBeforeItTakesAny) {
-  const std::vector<Vec3> points(3'000'000, Vec3::Zero());
-  const std::string message =
-      message_of([&] { FieldSampler(points, gaussian, Distance::euclidean()); });
+  const Correlation correlation(std::vector<Vec3>(3'000'000, Vec3::Zero()), gaussian,
+                                Distance::euclidean());
+  const std::string message = message_of([&] { FieldSampler sampler(correlation); });
   EXPECT_NE(message.find("3000000 points"), std::string::npos) << message;
   EXPECT_NE(message.find("67055.23 GiB"), std::string::npos) << message;  // 9e12 * 8 / 2^30
   EXPECT_NE(message.find("coarser mesh"), std::string::npos) << message;
@@ -247,13 +247,15 @@ TEST(FieldSampler, RefusesInputOutOfRange) {
   const std::vector<Vec3> points = sphere_points(0);
   const double inf = std::numeric_limits<double>::infinity();
   for (const double tolerance : {0.0, -1e-4, inf, std::nan("")})
-    EXPECT_THROW(FieldSampler(points, gaussian, Distance::euclidean(), {.tolerance = tolerance}),
+    EXPECT_THROW(FieldSampler(Correlation(points, gaussian, Distance::euclidean()),
+                              {.tolerance = tolerance}),
                  InputError)
         << tolerance;
-  EXPECT_NO_THROW(FieldSampler(points, gaussian, Distance::euclidean(), {.tolerance = 1e-300}));
-  EXPECT_THROW(FieldSampler({}, gaussian, Distance::euclidean()), InputError);
+  EXPECT_NO_THROW(
+      FieldSampler(Correlation(points, gaussian, Distance::euclidean()), {.tolerance = 1e-300}));
+  EXPECT_THROW(FieldSampler(Correlation({}, gaussian, Distance::euclidean())), InputError);
   const std::vector<Vec3> not_finite = {{0, 0, 0}, {1, inf, 0}};
-  EXPECT_THROW(FieldSampler(not_finite, gaussian, Distance::euclidean()), InputError);
+  EXPECT_THROW(FieldSampler(Correlation(not_finite, gaussian, Distance::euclidean())), InputError);
 }
 
 TEST(FieldNames, AreThoseOfTheCommandLineAndReport) {

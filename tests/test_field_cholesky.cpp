@@ -61,6 +61,12 @@ AutocorrelationMatrix with_round_off(const AutocorrelationMatrix& matrix, std::u
           }};
 }
 
+PreparedField prepared(const std::vector<Vec3>& points, const Autocorrelation& autocorrelation,
+                       const Distance& distance) {
+  const Correlation correlation(points, autocorrelation, distance);
+  return prepare_cholesky(autocorrelation_matrix(correlation));
+}
+
 struct Case {
   std::string name;
   AutocorrelationOptions autocorrelation;
@@ -80,8 +86,7 @@ TEST_P(EveryFamily, FactorMultipliesBackToTheAutocorrelation) {
   const Distance distance = GetParam().distance == DistanceKind::euclidean
                                 ? Distance::euclidean()
                                 : Distance::great_circle(points);
-  const PreparedField field =
-      prepare_cholesky(autocorrelation_matrix(points, autocorrelation, distance));
+  const PreparedField field = prepared(points, autocorrelation, distance);
   EXPECT_EQ(field.summary.factorization, GetParam().factorization)
       << name(field.summary.factorization);
   EXPECT_EQ(field.summary.rank, static_cast<Index>(field.factor.rank()));
@@ -126,8 +131,7 @@ TEST(CholeskyMethod, IndefiniteMatrixTakesTheEigenvalues) {
   const std::vector<Vec3> points = sphere_points(3);
   const Autocorrelation autocorrelation(options(Family::gaussian, 1.0));
   const Distance distance = Distance::great_circle(points);
-  const PreparedField field =
-      prepare_cholesky(autocorrelation_matrix(points, autocorrelation, distance));
+  const PreparedField field = prepared(points, autocorrelation, distance);
   const FieldSummary& summary = field.summary;
   EXPECT_EQ(summary.factorization, Factorization::eigenvalue);
   EXPECT_GT(summary.negative_eigenvalues, 0);
@@ -157,7 +161,8 @@ TEST(CholeskyMethod, NothingIsHalfWayNearTheIndefinite) {
   int n_eigenvalue = 0, n_pivoted = 0;
   for (double length = 0.3; length < 1.0; length += 0.02) {
     const Autocorrelation autocorrelation(options(Family::gaussian, length));
-    const AutocorrelationMatrix matrix = autocorrelation_matrix(points, autocorrelation, distance);
+    const Correlation correlation(points, autocorrelation, distance);
+    const AutocorrelationMatrix matrix = autocorrelation_matrix(correlation);
     const PreparedField field = prepare_cholesky(matrix);
     const double error = largest_error(field.factor, points, autocorrelation, distance);
     if (field.summary.factorization == Factorization::eigenvalue) {
@@ -200,7 +205,7 @@ TEST(CholeskyMethod, RoundOffDoesNotMoveTheHeights) {
   for (const double ratio : {2.5, 3.0, 3.5, 4.0, 5.0}) {
     const Autocorrelation autocorrelation(options(Family::gaussian, ratio * h));
     const Distance distance = Distance::euclidean();
-    EXPECT_LT(sensitivity(autocorrelation_matrix(points, autocorrelation, distance),
+    EXPECT_LT(sensitivity(autocorrelation_matrix(Correlation(points, autocorrelation, distance)),
                           Factorization::pivoted_cholesky),
               1e-8)
         << "l/h = " << ratio;
@@ -212,7 +217,7 @@ TEST(CholeskyMethod, RoundOffDoesNotMoveTheHeightsOfALargerSphere) {
   const double h = mesh_size_of_sphere(points.size(), 1.0);
   const Autocorrelation autocorrelation(options(Family::gaussian, 3.4 * h));
   const Distance distance = Distance::euclidean();
-  EXPECT_LT(sensitivity(autocorrelation_matrix(points, autocorrelation, distance),
+  EXPECT_LT(sensitivity(autocorrelation_matrix(Correlation(points, autocorrelation, distance)),
                         Factorization::pivoted_cholesky),
             1e-8);
 }
@@ -221,7 +226,7 @@ TEST(CholeskyMethod, RoundOffDoesNotMoveTheHeightsOfADefiniteMatrix) {
   const std::vector<Vec3> points = sphere_points(3);
   const Autocorrelation autocorrelation(options(Family::exponential, 0.4));
   const Distance distance = Distance::euclidean();
-  EXPECT_LT(sensitivity(autocorrelation_matrix(points, autocorrelation, distance),
+  EXPECT_LT(sensitivity(autocorrelation_matrix(Correlation(points, autocorrelation, distance)),
                         Factorization::cholesky),
             1e-8);
 }
@@ -232,7 +237,7 @@ TEST(CholeskyMethod, MultipleEigenvaluesDoNotMoveTheHeights) {
   const std::vector<Vec3> points = sphere_points(3);
   const Autocorrelation autocorrelation(options(Family::gaussian, 1.0));
   const Distance distance = Distance::great_circle(points);
-  EXPECT_LT(sensitivity(autocorrelation_matrix(points, autocorrelation, distance),
+  EXPECT_LT(sensitivity(autocorrelation_matrix(Correlation(points, autocorrelation, distance)),
                         Factorization::eigenvalue),
             1e-8);
 }
@@ -263,8 +268,7 @@ TEST(CholeskyMethod, ARotationMovesTheHeightsByRoundOffOnly) {
   for (const double length : {0.15, 0.45, 1.0}) {
     const Autocorrelation autocorrelation(options(Family::gaussian, length));
     const auto heights = [&](const std::vector<Vec3>& x) {
-      return prepare_cholesky(autocorrelation_matrix(x, autocorrelation, distance))
-          .factor.heights({1, 2});
+      return prepared(x, autocorrelation, distance).factor.heights({1, 2});
     };
     EXPECT_LT(largest_difference(heights(points), heights(turned)), 1e-8) << length;
   }

@@ -12,10 +12,11 @@
 
 namespace {
 
-const std::vector<std::string> order = {"error",           "mesh",     "mesh_io",    "surface",
-                                        "autocorrelation", "distance", "resolution", "white_noise",
-                                        "field",           "displace", "check",      "move_volume",
-                                        "statistics",      "options",  "report",     "pipeline"};
+const std::vector<std::string> order = {
+    "error",    "mesh",            "mesh_io",  "cad",         "surface",    "mask",
+    "periodic", "curve",           "autocorrelation", "distance", "correlation", "resolution",
+    "white_noise", "field",        "displace", "check",       "move_volume", "statistics",
+    "options",  "report",          "pipeline"};
 
 std::filesystem::path source_dir() { return ROUGHMESH_SOURCE_DIR; }
 

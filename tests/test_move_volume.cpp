@@ -74,8 +74,8 @@ detail::NodeRoles half_given(const Mesh& mesh) {
   return roles;
 }
 
-std::vector<detail::Tetrahedron> tetrahedra(const Mesh& mesh) {
-  std::vector<detail::Tetrahedron> result;
+std::vector<detail::Simplex> tetrahedra(const Mesh& mesh) {
+  std::vector<detail::Simplex> result;
   for (const ElementBlock& block : mesh.blocks)
     for (Index e = 0; block.type.shape == ElementShape::tetrahedron && e < block.size(); ++e) {
       const auto t = block.element(e);
@@ -282,7 +282,7 @@ TEST(MoveVolume, TheBoundaryOfRepeatedElementsStays) {
 TEST(MoveVolume, ANodeOfManyElements) {
   const Index n = 100'000;
   std::vector<Vec3> nodes = {{0, 0, 0}, {0, 0, 1}};
-  std::vector<detail::Tetrahedron> fan;
+  std::vector<detail::Simplex> fan;
   for (Index i = 0; i < n; ++i) {
     const double angle = 2 * std::numbers::pi * i / n;
     nodes.emplace_back(std::cos(angle), std::sin(angle), 0);

@@ -18,8 +18,8 @@ namespace {
 
 RoughenOptions good_options() {
   RoughenOptions options;
-  options.rms = 2;
-  options.length = {10};
+  options.surfaces[0].rms = 2;
+  options.surfaces[0].length = {10};
   return options;
 }
 
@@ -43,21 +43,21 @@ RoughenOptions read_job_text(const std::string& text) {
 
 TEST(Options, JsonAndBackIsTheIdentity) {
   RoughenOptions options = good_options();
-  options.group = {"surface", "7"};
-  options.length = {10, std::numeric_limits<double>::infinity(), 0.1};
-  options.acf = Family::self_affine;
-  options.hurst = 0.1 + 0.2;
-  options.distance = DistanceKind::great_circle;
-  options.length_definition = LengthDefinition::sal;
+  options.surfaces[0].group = {"surface", "7"};
+  options.surfaces[0].length = {10, std::numeric_limits<double>::infinity(), 0.1};
+  options.surfaces[0].acf = Family::self_affine;
+  options.surfaces[0].hurst = 0.1 + 0.2;
+  options.surfaces[0].distance = DistanceKind::great_circle;
+  options.surfaces[0].length_definition = LengthDefinition::sal;
   options.volume = VolumeChoice::none;
-  options.seed = std::numeric_limits<std::uint64_t>::max();
-  options.flip = true;
+  options.surfaces[0].seed = std::numeric_limits<std::uint64_t>::max();
+  options.surfaces[0].flip = true;
   const auto json = detail::options_to_json(options);
   const RoughenOptions back = detail::options_from_json(nlohmann::json::parse(json.dump()), "test");
   EXPECT_EQ(detail::options_to_json(back), json);
-  EXPECT_EQ(back.seed, options.seed);
-  EXPECT_EQ(back.length, options.length);
-  EXPECT_EQ(*back.hurst, *options.hurst);
+  EXPECT_EQ(back.surfaces[0].seed, options.surfaces[0].seed);
+  EXPECT_EQ(back.surfaces[0].length, options.surfaces[0].length);
+  EXPECT_EQ(*back.surfaces[0].hurst, *options.surfaces[0].hurst);
 }
 
 TEST(Options, TomlAndJsonJobsMeanTheSame) {
@@ -68,13 +68,13 @@ TEST(Options, TomlAndJsonJobsMeanTheSame) {
       R"({"input": "a.msh", "rms": 2, "length": [10, "inf", 5.5], "acf": "matern", "nu": 1.5, "seed": 3,
           "group": ["surface", "4"], "flip": true})");
   EXPECT_EQ(detail::options_to_json(toml), detail::options_to_json(json));
-  EXPECT_EQ(toml.acf, Family::matern);
-  EXPECT_EQ(toml.group, (std::vector<std::string>{"surface", "4"}));
+  EXPECT_EQ(toml.surfaces[0].acf, Family::matern);
+  EXPECT_EQ(toml.surfaces[0].group, (std::vector<std::string>{"surface", "4"}));
 }
 
 TEST(Options, AReportIsAJob) {
   RoughenOptions options = good_options();
-  options.seed = 42;
+  options.surfaces[0].seed = 42;
   const nlohmann::ordered_json report = {{"roughmesh", "0.1.0"},
                                          {"request", detail::options_to_json(options)}};
   EXPECT_EQ(detail::options_to_json(read_job_text(report.dump())),
@@ -104,14 +104,14 @@ TEST(Options, NonsenseIsRefusedByTheNameOfTheOption) {
   const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
   const std::vector<std::pair<std::string, std::function<void(RoughenOptions&, double)>>> numbers =
       {
-          {"--rms", [](auto& o, double x) { o.rms = x; }},
-          {"--length", [](auto& o, double x) { o.length = {x}; }},
+          {"--rms", [](auto& o, double x) { o.surfaces[0].rms = x; }},
+          {"--length", [](auto& o, double x) { o.surfaces[0].length = {x}; }},
           {"--tolerance", [](auto& o, double x) { o.tolerance = x; }},
-          {"--edge-angle", [](auto& o, double x) { o.edge_angle = x; }},
-          {"--nu", [](auto& o, double x) { o.acf = Family::matern, o.nu = x; }},
-          {"--hurst", [](auto& o, double x) { o.acf = Family::self_affine, o.hurst = x; }},
-          {"--power", [](auto& o, double x) { o.acf = Family::stretched, o.power = x; }},
-          {"--alpha", [](auto& o, double x) { o.acf = Family::rational_quadratic, o.alpha = x; }},
+          {"--edge-angle", [](auto& o, double x) { o.surfaces[0].edge_angle = x; }},
+          {"--nu", [](auto& o, double x) { o.surfaces[0].acf = Family::matern, o.surfaces[0].nu = x; }},
+          {"--hurst", [](auto& o, double x) { o.surfaces[0].acf = Family::self_affine, o.surfaces[0].hurst = x; }},
+          {"--power", [](auto& o, double x) { o.surfaces[0].acf = Family::stretched, o.surfaces[0].power = x; }},
+          {"--alpha", [](auto& o, double x) { o.surfaces[0].acf = Family::rational_quadratic, o.surfaces[0].alpha = x; }},
       };
   for (const auto& [option, set] : numbers)
     for (const double value : {0.0, -1.0, nan, inf, -inf}) {
@@ -128,12 +128,12 @@ TEST(Options, CombinationsThatMakeNoSenseAreRefused) {
     change(options);
     return !refusal(options).empty();
   };
-  EXPECT_TRUE(refused([](auto& o) { o.length = {}; }));
-  EXPECT_TRUE(refused([](auto& o) { o.length = {1, 2, 3, 4}; }));
-  EXPECT_TRUE(refused([](auto& o) { o.angle = 10; }));
-  EXPECT_TRUE(refused([](auto& o) { o.length = {1, 2}, o.distance = DistanceKind::great_circle; }));
-  EXPECT_TRUE(refused([](auto& o) { o.nu = 1; }));
-  EXPECT_TRUE(refused([](auto& o) { o.rolloff = 1; }));
+  EXPECT_TRUE(refused([](auto& o) { o.surfaces[0].length = {}; }));
+  EXPECT_TRUE(refused([](auto& o) { o.surfaces[0].length = {1, 2, 3, 4}; }));
+  EXPECT_TRUE(refused([](auto& o) { o.surfaces[0].angle = 10; }));
+  EXPECT_TRUE(refused([](auto& o) { o.surfaces[0].length = {1, 2}, o.surfaces[0].distance = DistanceKind::great_circle; }));
+  EXPECT_TRUE(refused([](auto& o) { o.surfaces[0].nu = 1; }));
+  EXPECT_TRUE(refused([](auto& o) { o.surfaces[0].rolloff = 1; }));
   EXPECT_TRUE(refused([](auto& o) { o.method = "lattice"; }));
   EXPECT_TRUE(refused([](auto& o) { o.threads = -1; }));
   EXPECT_TRUE(refused([](auto& o) { o.realizations = 0; }));

@@ -18,8 +18,8 @@ namespace {
 
 RoughenOptions sphere_options() {
   RoughenOptions options;
-  options.rms = 0.02;
-  options.length = {0.3};
+  options.surfaces[0].rms = 0.02;
+  options.surfaces[0].length = {0.3};
   return options;
 }
 
@@ -66,16 +66,16 @@ TEST(Pipeline, RealizationsAreTheSameAloneAndAmongOthers) {
   const Result alone = run(sphere, options);
   EXPECT_EQ(all.meshes[3].heights, alone.meshes[0].heights);
   EXPECT_EQ(alone.meshes[0].realization, 3U);
-  EXPECT_GT(largest_difference(all.meshes[0].heights, all.meshes[1].heights), options.rms);
+  EXPECT_GT(largest_difference(all.meshes[0].heights, all.meshes[1].heights), options.surfaces[0].rms);
 }
 
 TEST(Pipeline, SeedsGiveOtherSurfaces) {
   const Mesh sphere = test::icosphere(2);
   RoughenOptions options = sphere_options();
   const Result zero = run(sphere, options);
-  options.seed = 1;
+  options.surfaces[0].seed = 1;
   EXPECT_GT(largest_difference(zero.meshes[0].heights, run(sphere, options).meshes[0].heights),
-            options.rms);
+            options.surfaces[0].rms);
 }
 
 // The promise of docs/math.md, "Seeds": 1e-8 Rq across threads and node numbering.
@@ -83,18 +83,18 @@ TEST(Pipeline, HeightsDoNotDependOnThreadsOrNumbering) {
   const Mesh sphere = test::icosphere(3);
   for (const double length : {0.1, 0.5}) {  // plain and pivoted factorization
     RoughenOptions options = sphere_options();
-    options.length = {length};
+    options.surfaces[0].length = {length};
     options.threads = 1;
     const Result one = run(sphere, options);
     options.threads = 2;
     const Result two = run(sphere, options);
-    EXPECT_LE(largest_difference(one.meshes[0].heights, two.meshes[0].heights), 1e-8 * options.rms);
+    EXPECT_LE(largest_difference(one.meshes[0].heights, two.meshes[0].heights), 1e-8 * options.surfaces[0].rms);
 
     std::vector<Index> place;
     const Result shuffled = run(renumbered(sphere, place), options);
     for (std::size_t i = 0; i < place.size(); ++i)
       ASSERT_NEAR(shuffled.meshes[0].heights[place[i]], two.meshes[0].heights[i],
-                  1e-8 * options.rms);
+                  1e-8 * options.surfaces[0].rms);
   }
 }
 
@@ -104,11 +104,11 @@ TEST(Pipeline, HeightsScaleWithTheUnit) {
   for (Vec3& x : scaled.nodes) x *= 1024;
   RoughenOptions options = sphere_options();
   const Result small = run(sphere, options);
-  options.rms *= 1024;
-  options.length[0] *= 1024;
+  options.surfaces[0].rms *= 1024;
+  options.surfaces[0].length[0] *= 1024;
   const Result large = run(scaled, options);
   for (std::size_t i = 0; i < sphere.nodes.size(); ++i)
-    ASSERT_NEAR(large.meshes[0].heights[i], 1024 * small.meshes[0].heights[i], 1e-8 * options.rms);
+    ASSERT_NEAR(large.meshes[0].heights[i], 1024 * small.meshes[0].heights[i], 1e-8 * options.surfaces[0].rms);
 }
 
 // A rigid motion renames the places, so heights change; what must hold does not: the covariance,
@@ -122,15 +122,15 @@ TEST(Pipeline, RigidMotionChangesNoStatistic) {
   for (Vec3& x : moved.nodes) x = turn * x + Vec3(10, -20, 30);
   const Result at_rest = run(sphere, sphere_options());
   const Result in_motion = run(moved, sphere_options());
-  EXPECT_NEAR(in_motion.report.surface_area, at_rest.report.surface_area, 1e-11);
+  EXPECT_NEAR(in_motion.report.surfaces[0].area, at_rest.report.surfaces[0].area, 1e-11);
   const RealizationReport& a = at_rest.report.realizations[0];
   const RealizationReport& b = in_motion.report.realizations[0];
-  EXPECT_NEAR(b.sq_expected, a.sq_expected, 1e-9 * a.sq_expected);
-  EXPECT_NEAR(b.sq_expected_std, a.sq_expected_std, 1e-9 * a.sq_expected);
+  EXPECT_NEAR(b.surfaces[0].sq_expected, a.surfaces[0].sq_expected, 1e-9 * a.surfaces[0].sq_expected);
+  EXPECT_NEAR(b.surfaces[0].sq_expected_std, a.surfaces[0].sq_expected_std, 1e-9 * a.surfaces[0].sq_expected);
   // Both are draws from that law: five standard deviations.
-  EXPECT_NEAR(a.statistics.sq, a.sq_expected, 5 * a.sq_expected_std);
-  EXPECT_NEAR(b.statistics.sq, b.sq_expected, 5 * b.sq_expected_std);
-  EXPECT_LE(in_motion.report.audit.covariance_error, 2e-8);
+  EXPECT_NEAR(a.surfaces[0].heights.sq, a.surfaces[0].sq_expected, 5 * a.surfaces[0].sq_expected_std);
+  EXPECT_NEAR(b.surfaces[0].heights.sq, b.surfaces[0].sq_expected, 5 * b.surfaces[0].sq_expected_std);
+  EXPECT_LE(in_motion.report.surfaces[0].audit.covariance_error, 2e-8);
 }
 
 TEST(Pipeline, NodesMoveByTheirHeightAlongTheNormal) {
@@ -147,8 +147,8 @@ TEST(Pipeline, NodesMoveByTheirHeightAlongTheNormal) {
 TEST(Pipeline, TheInteriorFollowsAndTheBoxStays) {
   const Mesh mesh = test::ball_in_box(12);
   RoughenOptions options = sphere_options();
-  options.rms = 0.01;
-  options.group = {"surface"};
+  options.surfaces[0].rms = 0.01;
+  options.surfaces[0].group = {"surface"};
   const Result result = run(mesh, options);
   const Mesh& rough = result.meshes[0].mesh;
   for (const Index node : mesh.blocks[1].nodes) EXPECT_EQ(rough.nodes[node], mesh.nodes[node]);
@@ -160,8 +160,8 @@ TEST(Pipeline, TheInteriorFollowsAndTheBoxStays) {
 TEST(Pipeline, InvertedElementsAreRefusedUnlessAllowed) {
   const Mesh mesh = test::ball_in_box(8);
   RoughenOptions options = sphere_options();
-  options.group = {"surface"};
-  options.rms = 0.4;
+  options.surfaces[0].group = {"surface"};
+  options.surfaces[0].rms = 0.4;
   int delivered = 0;
   const auto count = [&](const RoughMesh&, Report&) { ++delivered; };
   EXPECT_THROW(roughen(mesh, options, count), CheckError);
@@ -180,7 +180,7 @@ TEST(Pipeline, ReportStatesWhatWasMeasured) {
   const Result result = run(sphere, options);
   const auto json = nlohmann::json::parse(to_json(result.report));
   EXPECT_EQ(json["roughmesh"], version());
-  EXPECT_EQ(json["request"]["rms"], options.rms);
+  EXPECT_EQ(json["request"]["rms"], options.surfaces[0].rms);
   EXPECT_EQ(json["surface"]["nodes"], 642);
   EXPECT_EQ(json["surface"]["elements"], 1280);
   EXPECT_LE(json["field"]["covariance_error"].get<double>(), 2e-8);
@@ -207,8 +207,8 @@ TEST(Pipeline, WarnsOfWhatTheMeshCannotCarry) {
   const Mesh sphere = test::icosphere(2);
   const auto n_warnings = [&](double rms, double length) {
     RoughenOptions options = sphere_options();
-    options.rms = rms;
-    options.length = {length};
+    options.surfaces[0].rms = rms;
+    options.surfaces[0].length = {length};
     options.allow_invalid = true;
     return run(sphere, options).report.warnings.size();
   };

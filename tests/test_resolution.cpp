@@ -27,9 +27,14 @@ Autocorrelation exponential(double length) {
   return Autocorrelation({.family = Family::exponential, .length = length});
 }
 
+Resolution resolution_of(const Surface& surface, const Autocorrelation& acf,
+                         const Distance& distance) {
+  return assess_resolution(surface, Correlation(surface.points, acf, distance));
+}
+
 // The plate's median edge is the side of its squares.
 Resolution on_plate(const Autocorrelation& acf, int divisions = 20) {
-  return assess_resolution(test::surface_of(test::plate(divisions)), acf, Distance::euclidean());
+  return resolution_of(test::surface_of(test::plate(divisions)), acf, Distance::euclidean());
 }
 
 Surface squares_instead_of_triangles(Surface surface, int divisions) {
@@ -107,7 +112,7 @@ TEST(Resolution, WorstAxisOfAnAnisotropicField) {
   const Surface surface = test::surface_of(test::plate(20));
   const Autocorrelation acf({.length = 0.5});
   const Distance distance = Distance::stretched({.lengths = {0.5, 0.1, infinite}});
-  const Resolution resolution = assess_resolution(surface, acf, distance);
+  const Resolution resolution = resolution_of(surface, acf, distance);
   EXPECT_NEAR(resolution.lengths[0], 0.5, 1e-15);
   EXPECT_NEAR(resolution.lengths[1], 0.1, 1e-15);
   EXPECT_EQ(resolution.lengths[2], infinite);
@@ -128,7 +133,7 @@ TEST(Resolution, SlopeOfTheInterpolantOnSquares) {
     const double expected = 2 * std::sqrt(1 - acf.rho(h)) / h;
     EXPECT_NEAR(on_plate(acf).rms_slope, expected, 1e-12 * expected);
     const Surface squares = squares_instead_of_triangles(test::surface_of(test::plate(20)), 20);
-    EXPECT_NEAR(assess_resolution(squares, acf, Distance::euclidean()).rms_slope, expected,
+    EXPECT_NEAR(resolution_of(squares, acf, Distance::euclidean()).rms_slope, expected,
                 1e-12 * expected);
   }
 }
@@ -139,11 +144,11 @@ TEST(Resolution, SlopeTendsToThatOfTheField) {
   const Surface surface = test::surface_of(test::icosphere(4));
   const double h = surface.mesh_size.max;
   const Resolution resolution =
-      assess_resolution(surface, Autocorrelation({.length = 1}), Distance::euclidean());
+      resolution_of(surface, Autocorrelation({.length = 1}), Distance::euclidean());
   EXPECT_NEAR(resolution.field_slope.value(), std::sqrt(2.0), 1e-14);
   EXPECT_LT(resolution.rms_slope, std::sqrt(2.0));
   EXPECT_GT(resolution.rms_slope, std::sqrt(2.0) * (1 - h * h / 4));
-  EXPECT_FALSE(assess_resolution(surface, exponential(1), Distance::euclidean()).field_slope);
+  EXPECT_FALSE(resolution_of(surface, exponential(1), Distance::euclidean()).field_slope);
 }
 
 // 800 realizations give the mean of the largest height to 0.35 / sqrt(800) = 0.012, times 4; the
@@ -156,7 +161,7 @@ TEST(Resolution, LargestHeightAgreesWithMonteCarlo) {
         exponential(0.01)})
     for (const Surface* surface : {&plate, &sphere}) {
       const double expected =
-          assess_resolution(*surface, acf, Distance::euclidean()).expected_max_height;
+          resolution_of(*surface, acf, Distance::euclidean()).expected_max_height;
       EXPECT_NEAR(expected, mean_max_height(*surface, acf, 800), 0.1 + 0.048)
           << name(acf.family()) << " " << acf.length() << " " << surface->n_points();
     }
@@ -172,8 +177,8 @@ TEST(Resolution, CurvatureOfASphereIsItsRadius) {
   for (const double radius : {1e-9, 1.0, 50.0})
     for (int subdivisions = 0; subdivisions <= 4; ++subdivisions) {
       const Resolution resolution =
-          assess_resolution(test::surface_of(test::icosphere(subdivisions, radius)),
-                            Autocorrelation({.length = radius}), Distance::euclidean());
+          resolution_of(test::surface_of(test::icosphere(subdivisions, radius)),
+                        Autocorrelation({.length = radius}), Distance::euclidean());
       EXPECT_NEAR(resolution.min_curvature_radius, radius, 0.02 * radius) << subdivisions;
       EXPECT_NEAR(resolution.largest_safe_rq,
                   resolution.min_curvature_radius / resolution.expected_max_height, 1e-12 * radius);
@@ -185,7 +190,7 @@ TEST(Resolution, FlatSurfacesHaveNoLimit) {
   const Eigen::Matrix3d rotation =
       Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   for (Vec3& x : mesh.nodes) x = rotation * x;
-  const Resolution resolution = assess_resolution(
+  const Resolution resolution = resolution_of(
       test::surface_of(mesh), Autocorrelation({.length = 0.3}), Distance::euclidean());
   EXPECT_EQ(resolution.min_curvature_radius, infinite);
   EXPECT_EQ(resolution.largest_safe_rq, infinite);
@@ -197,15 +202,15 @@ TEST(Resolution, SharpEdgesAreNoCurvature) {
   Mesh mesh = test::plate(10);
   for (Vec3& x : mesh.nodes)
     if (x.x() > 0.5) x = Vec3(0.5, x.y(), 0.5 - x.x());
-  const Resolution resolution = assess_resolution(
+  const Resolution resolution = resolution_of(
       test::surface_of(mesh), Autocorrelation({.length = 0.3}), Distance::euclidean());
   EXPECT_EQ(resolution.min_curvature_radius, infinite);
 }
 
 TEST(Resolution, ScalesWithTheLengthUnit) {
   const auto at = [](double unit) {
-    return assess_resolution(test::surface_of(test::icosphere(2, unit)), exponential(0.3 * unit),
-                             Distance::euclidean());
+    return resolution_of(test::surface_of(test::icosphere(2, unit)), exponential(0.3 * unit),
+                         Distance::euclidean());
   };
   const Resolution one = at(1);
   for (const double unit : {1e-12, 1024.0, 1e12}) {
@@ -223,7 +228,7 @@ TEST(Resolution, IsTheSameOnAnyNumberOfThreads) {
   const Surface surface = test::surface_of(test::icosphere(5));
   const auto slope = [&](int n_threads) {
     const detail::ThreadLimit limit(n_threads);
-    return assess_resolution(surface, exponential(0.1), Distance::euclidean()).rms_slope;
+    return resolution_of(surface, exponential(0.1), Distance::euclidean()).rms_slope;
   };
   EXPECT_EQ(slope(1), slope(2));
 }
@@ -243,7 +248,7 @@ TEST(Resolution, WarnsOfALargeEdgeInAMeshThatIsFineElsewhere) {
   Mesh mesh = test::plate(20);
   for (Vec3& x : mesh.nodes)
     if (x.x() > 0.99) x.x() += 0.2;
-  const Resolution resolution = assess_resolution(
+  const Resolution resolution = resolution_of(
       test::surface_of(mesh), Autocorrelation({.length = 0.2}), Distance::euclidean());
   const auto warnings = resolution_warnings(resolution, 0.1);
   ASSERT_EQ(warnings.size(), 1U);
@@ -264,8 +269,8 @@ TEST(Resolution, SmoothFamiliesAreToldToRefine) {
 
 TEST(Resolution, WarnsOfHeightsBeyondTheRadiusOfCurvature) {
   const Resolution resolution =
-      assess_resolution(test::surface_of(test::icosphere(3)), Autocorrelation({.length = 0.5}),
-                        Distance::euclidean());
+      resolution_of(test::surface_of(test::icosphere(3)), Autocorrelation({.length = 0.5}),
+                    Distance::euclidean());
   EXPECT_TRUE(resolution_warnings(resolution, 0.99 * resolution.largest_safe_rq).empty());
   const auto warnings = resolution_warnings(resolution, 1.01 * resolution.largest_safe_rq);
   ASSERT_EQ(warnings.size(), 1U);

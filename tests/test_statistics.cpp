@@ -18,6 +18,11 @@ using namespace roughmesh;
 
 namespace {
 
+ExpectedSq expected_sq_of(const Surface& surface, const Autocorrelation& acf,
+                          const Distance& distance) {
+  return expected_sq(surface, Correlation(surface.points, acf, distance));
+}
+
 // Plate whose squares grow along x: node areas differ by a factor of 20.
 Surface graded_plate(int divisions) {
   Mesh mesh = test::plate(divisions);
@@ -79,7 +84,7 @@ MonteCarlo sq_by_monte_carlo(const Surface& surface, const Autocorrelation& acf,
 // of Sq); `model` is the relative error granted to the chi-square form, times the spread.
 void expect_law_of_sq(const Surface& surface, const Autocorrelation& acf, const Distance& distance,
                       double model) {
-  const ExpectedSq expected = expected_sq(surface, acf, distance);
+  const ExpectedSq expected = expected_sq_of(surface, acf, distance);
   const MonteCarlo measured = sq_by_monte_carlo(surface, acf, distance);
   const double spread = measured.standard_deviation;
   EXPECT_NEAR(expected.mean, measured.mean, (4.5 / std::sqrt(n_realizations) + model) * spread);
@@ -172,7 +177,7 @@ TEST(Statistics, MomentsAreTracesOfTheCentredCovariance) {
   const double m = weighted.trace();
   const double half = m * m / (2 * (weighted * weighted).trace());
   const double mean = std::sqrt(m / half) * std::tgamma(half + 0.5) / std::tgamma(half);
-  const ExpectedSq expected = expected_sq(surface, acf, Distance::euclidean());
+  const ExpectedSq expected = expected_sq_of(surface, acf, Distance::euclidean());
   EXPECT_NEAR(expected.mean, mean, 1e-12);
   EXPECT_NEAR(expected.standard_deviation, std::sqrt(m - mean * mean), 1e-11);
 }
@@ -190,7 +195,7 @@ TEST(Statistics, LawOfSqUnderStrongCorrelation) {
 TEST(Statistics, LawOfSqOfWhiteNoiseIsChi) {
   const Surface surface = test::surface_of(test::icosphere(0));
   const ExpectedSq expected =
-      expected_sq(surface, Autocorrelation({.length = 1e-6}), Distance::euclidean());
+      expected_sq_of(surface, Autocorrelation({.length = 1e-6}), Distance::euclidean());
   const double mean_chi = std::sqrt(2.0) * std::tgamma(6.0) / std::tgamma(5.5);
   EXPECT_NEAR(expected.mean, mean_chi / std::sqrt(12), 1e-13);
   EXPECT_NEAR(expected.standard_deviation, std::sqrt((11 - mean_chi * mean_chi) / 12), 1e-13);
@@ -200,7 +205,7 @@ TEST(Statistics, LawOfSqOfWhiteNoiseIsChi) {
 TEST(Statistics, LawOfSqKeepsItsDigitsWhenAllPointsMoveTogether) {
   const Surface surface = test::surface_of(test::icosphere(1));
   const auto at = [&](double length) {
-    return expected_sq(surface, Autocorrelation({.length = length}), Distance::euclidean());
+    return expected_sq_of(surface, Autocorrelation({.length = length}), Distance::euclidean());
   };
   EXPECT_NEAR(at(1e3).mean / at(1e2).mean, 0.1, 1e-4);
   EXPECT_NEAR(at(1e3).standard_deviation / at(1e2).standard_deviation, 0.1, 1e-4);
@@ -212,9 +217,9 @@ TEST(Statistics, LawOfSqKeepsItsDigitsWhenAllPointsMoveTogether) {
 TEST(Statistics, SampledSumsAgreeWithExactOnes) {
   const Autocorrelation acf({.length = 0.5});
   const ExpectedSq exact =
-      expected_sq(test::surface_of(test::icosphere(3)), acf, Distance::euclidean());
+      expected_sq_of(test::surface_of(test::icosphere(3)), acf, Distance::euclidean());
   const ExpectedSq sampled =
-      expected_sq(test::surface_of(test::icosphere(4)), acf, Distance::euclidean());
+      expected_sq_of(test::surface_of(test::icosphere(4)), acf, Distance::euclidean());
   EXPECT_NEAR(sampled.mean, exact.mean, 0.01 * exact.standard_deviation);
   EXPECT_NEAR(sampled.standard_deviation, exact.standard_deviation,
               0.01 * exact.standard_deviation);
@@ -223,8 +228,8 @@ TEST(Statistics, SampledSumsAgreeWithExactOnes) {
 // On an open, graded plate rows differ between the middle and the border.
 TEST(Statistics, SampledSumsAgreeOnAGradedPlate) {
   const Autocorrelation acf({.family = Family::exponential, .length = 0.2});
-  const ExpectedSq exact = expected_sq(graded_plate(40), acf, Distance::euclidean());
-  const ExpectedSq sampled = expected_sq(graded_plate(80), acf, Distance::euclidean());
+  const ExpectedSq exact = expected_sq_of(graded_plate(40), acf, Distance::euclidean());
+  const ExpectedSq sampled = expected_sq_of(graded_plate(80), acf, Distance::euclidean());
   EXPECT_NEAR(sampled.mean, exact.mean, 0.1 * exact.standard_deviation);
   EXPECT_NEAR(sampled.standard_deviation, exact.standard_deviation,
               0.05 * exact.standard_deviation);
@@ -235,7 +240,7 @@ TEST(Statistics, LawOfSqIsTheSameOnAnyNumberOfThreads) {
   const Autocorrelation acf({.length = 0.3});
   const auto with_threads = [&](int n) {
     const detail::ThreadLimit limit(n);
-    return expected_sq(surface, acf, Distance::euclidean());
+    return expected_sq_of(surface, acf, Distance::euclidean());
   };
   EXPECT_EQ(with_threads(1).mean, with_threads(2).mean);
   EXPECT_EQ(with_threads(1).standard_deviation, with_threads(2).standard_deviation);

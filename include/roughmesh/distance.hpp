@@ -3,9 +3,11 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -31,9 +33,15 @@ struct Anisotropy {
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< orthonormal columns
 };
 
-enum class DistanceKind { euclidean, great_circle };
+enum class DistanceKind {
+  euclidean,
+  great_circle,
+  periodic,       ///< that of the nearest image; Correlation sums over all images
+  minimum_image,  ///< that of the nearest image, alone
+  curve           ///< along a curve
+};
 
-std::string_view name(DistanceKind kind);  ///< "euclidean", "great-circle"
+std::string_view name(DistanceKind kind);  ///< "euclidean", "great-circle", "minimum-image"
 
 /// d(x, y), symmetric, d(x, x) = 0. A value; cheap to copy.
 class Distance {
@@ -54,15 +62,42 @@ class Distance {
   /// @throws InputError  deviation above 1e-3 of the radius: names the deviation
   static Distance great_circle(std::span<const Vec3> points);
 
+  /// | S (x - y + nL) | of the nearest image, n being whole numbers on the axes with a period
+  /// (docs/math.md, eq. 25 and 27). `periodic` is positive definite through the sum over images
+  /// that Correlation makes; `minimum_image`, the distance of Loth et al. (2020), in general is
+  /// not.
+  /// @param period      L, a length for each axis; 0: not periodic along it
+  /// @param anisotropy  lengths as in stretched(), along the coordinate axes
+  /// @throws InputError  a period that is negative or not finite, no period at all, turned axes,
+  ///                     and as stretched()
+  static Distance periodic(const Vec3& period,
+                           const Anisotropy& anisotropy = {.lengths = {1, 1, 1}});
+  static Distance minimum_image(const Vec3& period,
+                                const Anisotropy& anisotropy = {.lengths = {1, 1, 1}});
+
+  /// Between places (arc length, number of the piece, 0), as curve_places() makes them: |s - t| on
+  /// one piece, the shorter way round where it is closed, infinite between pieces (docs/math.md,
+  /// eq. 28).
+  /// @param closed_lengths  for each piece its length if it is closed, else infinity
+  /// @throws InputError  no piece, or a length that is not above 0
+  static Distance curve(std::vector<double> closed_lengths);
+
   double operator()(const Vec3& x, const Vec3& y) const;
   DistanceKind kind() const { return kind_; }
   const Eigen::Matrix3d& stretch() const { return stretch_; }  ///< S; identity unless stretched
+  const Vec3& period() const { return period_; }   ///< L; 0 along axes that are not periodic
+  std::span<const double> closed_lengths() const;  ///< one per piece of a curve, else empty
 
  private:
+  static Distance with_period(DistanceKind kind, const Vec3& period, const Anisotropy& anisotropy);
+  double along_curve(const Vec3& x, const Vec3& y) const;
+
   DistanceKind kind_ = DistanceKind::euclidean;
   Eigen::Matrix3d stretch_ = Eigen::Matrix3d::Identity();
   Vec3 centre_ = Vec3::Zero();
   double radius_ = 0;
+  Vec3 period_ = Vec3::Zero();
+  std::shared_ptr<const std::vector<double>> closed_lengths_;
 };
 
 }  // namespace roughmesh

@@ -5,13 +5,12 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "roughmesh/autocorrelation.hpp"
-#include "roughmesh/distance.hpp"
+#include "roughmesh/correlation.hpp"
+#include "roughmesh/error.hpp"
 #include "roughmesh/mesh.hpp"
 
 namespace roughmesh {
@@ -46,6 +45,7 @@ struct FieldSummary {
   std::optional<double> smallest_eigenvalue;
   double smallest_correlation = 0;  ///< smallest rho between two points
   double variance_change = 0;  ///< largest |variance - 1| that the clipping of eigenvalues leaves
+  std::optional<double> minimum_image_difference;  ///< Correlation::minimum_image_difference()
 };
 
 /// Largest |covariance - rho| over the audited pairs and diagonal entries.
@@ -57,20 +57,20 @@ struct Audit {
 
 /// Draws realizations d of a zero-mean Gaussian field with unit variance and
 ///
-///     E[d_i d_j] = rho(distance(x_i, x_j))                       (docs/math.md, eq. 1)
+///     E[d_i d_j] = R_ij                                          (docs/math.md, eq. 1)
 ///
-/// at n points x_i. `cholesky` is the method of Loth et al. (2020): N^2 memory, N^3 work, any
-/// distance. Heights depend on (seed, realization, points) only, to 1e-8 across threads and
-/// processors.
+/// at the n points of a Correlation R. `cholesky` is the method of Loth et al. (2020): N^2 memory,
+/// N^3 work, any distance. Heights depend on (seed, realization, points) only, to 1e-8 across
+/// threads and processors.
 class FieldSampler {
  public:
-  /// @param points  n >= 1 distinct points in canonical order (Surface::points)
-  /// @throws InputError      no points or one that is not finite; tolerance out of range; too
-  ///                         little free memory, naming what is needed
+  /// @param correlation  of n >= 1 points in canonical order (Surface::points); of points that
+  ///                     carry one height only the masters (PeriodicPartners)
+  /// @throws InputError      no points; tolerance out of range; too little free memory, naming what
+  ///                         is needed
   /// @throws NumericalError  a correlation that is not a number; the eigenvalue decomposition did
   ///                         not converge
-  FieldSampler(std::span<const Vec3> points, const Autocorrelation& autocorrelation,
-               const Distance& distance, const FieldOptions& options = {});
+  explicit FieldSampler(const Correlation& correlation, const FieldOptions& options = {});
   ~FieldSampler();
   FieldSampler(FieldSampler&&) noexcept;
   FieldSampler& operator=(FieldSampler&&) noexcept;

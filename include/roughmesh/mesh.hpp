@@ -2,6 +2,7 @@
 // A finite element mesh as plain data.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -43,9 +44,15 @@ int n_corners(ElementShape shape);          ///< 1 to 8
 std::string name(const ElementType& type);  ///< for messages: "triangle", "tetrahedron of order 2"
 
 /// Local corner numbers of the faces of a shape of dimension 3, each face ordered so that its
-/// normal by the right-hand rule points out of an element of positive volume; empty for other
-/// shapes.
+/// normal by the right-hand rule points out of an element of positive volume; of the lines around a
+/// shape of dimension 2, in the order of its corners; empty for other shapes. Node n_corners + k of
+/// an element of order 2 with further nodes on its faces belongs to the k-th of them that can have
+/// one, counted after those of the edges.
 std::span<const std::vector<int>> local_faces(ElementShape shape);
+
+/// Local corner numbers of the two ends of each edge. Node n_corners + k of an element of order 2
+/// lies on edge k. Empty for points.
+std::span<const std::array<int, 2>> local_edges(ElementShape shape);
 
 /// Elements of one type that lie on one entity and in the same physical groups.
 struct ElementBlock {

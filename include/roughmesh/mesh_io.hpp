@@ -59,6 +59,11 @@ void write_mesh(const Mesh& mesh, const std::filesystem::path& path,
 std::vector<std::string> conversion_losses(const Mesh& mesh, const std::filesystem::path& path,
                                            const WriteOptions& options = {});
 
+/// Would write_mesh() put WriteOptions::fields into a file at `path`?
+/// @throws InputError  as write_mesh would, before anything is written
+bool carries_fields(const Mesh& mesh, const std::filesystem::path& path,
+                    const WriteOptions& options = {});
+
 /// Writes text the same way: whole or not at all. For reports beside meshes.
 void write_text(const std::string& text, const std::filesystem::path& path);
 
@@ -83,8 +88,9 @@ std::string checksum(const Mesh& mesh);
 /// field of 16 characters for Nastran, 2^-52 of the binade otherwise. A length.
 double coordinate_spacing(const Mesh& mesh);
 
-/// Removes what an unfinished write_mesh or write_text left beside its path. Async-signal-safe: for
-/// the handler of an interrupt, after which the process must end.
+/// Removes what an unfinished write_mesh or write_text left beside its path; kills a gmsh that runs
+/// for mesh_geometry and removes its temporary folder. Async-signal-safe: for the handler of an
+/// interrupt, after which the process must end.
 void discard_unfinished_files() noexcept;
 
 }  // namespace roughmesh

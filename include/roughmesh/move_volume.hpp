@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Displacement of a surface -> positions of all nodes of the mesh.
+// Displacement of surfaces -> positions of all nodes of the mesh.
 #pragma once
 
 #include <memory>
@@ -13,23 +13,28 @@ namespace roughmesh {
 
 enum class VolumeMethod {
   none,     ///< only the nodes of the surface move
-  harmonic  ///< harmonic extension with weight 1/V
+  harmonic  ///< harmonic extension with weight 1/V (1/area of the faces of a planar mesh)
 };
 
 std::string_view name(VolumeMethod method);
 
-/// Prepared once for a mesh and the surface that moves; the linear system is assembled once.
+/// Prepared once for a mesh and the surfaces that move; the linear system is assembled once.
 ///
-/// The interior follows by the harmonic extension of the displacement, each component solved with
-/// the stiffness of linear tetrahedra weighted by 1 / volume (docs/math.md, eq. 16), so that small
-/// elements near the surface deform least. Nodes of the domain's boundary and of every unselected
-/// surface element stay where they are, as do nodes without volume elements. A mesh without volume
-/// elements moves its surface only.
+/// Elements of the dimension above that of the surfaces follow: volumes behind faces, the faces of a
+/// planar mesh beside lines. Their inner corners move by the harmonic extension of the displacement,
+/// each component solved with the stiffness of linear simplices weighted by 1 / volume
+/// (docs/math.md, eq. 16), so that small elements near the surface deform least. Other inner nodes of
+/// elements of order 2 follow the nodes of their edges and faces (eq. 38), which keeps a straight
+/// edge straight; that no curved element is inverted is not checked. Nodes of the domain's boundary
+/// and of every unselected face stay where they are, as do nodes that these separate from the
+/// surfaces. A mesh without such elements moves its surfaces only.
 class VolumeMover {
  public:
-  /// @param method  of a mesh with volume elements
-  /// @throws InputError  an element of order above 1 has a node that would move
-  VolumeMover(const Mesh& mesh, const Surface& surface,
+  /// @param surfaces  one or more of this mesh, of one dimension, without a common face
+  /// @param method    of a mesh with elements that can follow
+  /// @throws InputError  no surface, surfaces of two dimensions, a face in two of them; an element
+  ///                     of order above 2 has a node that would move
+  VolumeMover(const Mesh& mesh, std::span<const Surface> surfaces,
               VolumeMethod method = VolumeMethod::harmonic);
   ~VolumeMover();
   VolumeMover(VolumeMover&&) noexcept;
@@ -37,11 +42,11 @@ class VolumeMover {
 
   VolumeMethod method() const;
 
-  /// Surface nodes that also lie on unselected faces, which stay: the rough surface meets a wall
-  /// there.
+  /// Nodes of the surfaces that also lie on a face that is in none of them and stays: the rough
+  /// surface meets a wall there.
   Index n_wall_nodes() const;
 
-  /// @param displacements  one vector per point of the surface
+  /// @param displacements  one vector per node of moved_nodes(surfaces), in its order
   /// @return               positions of all nodes of the mesh
   /// @throws NumericalError  conjugate gradients did not converge
   std::vector<Vec3> move(std::span<const Vec3> displacements) const;

@@ -8,12 +8,16 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "roughmesh/autocorrelation.hpp"
 #include "roughmesh/distance.hpp"
 #include "roughmesh/error.hpp"
+#include "roughmesh/cad.hpp"
 #include "roughmesh/field.hpp"
+#include "roughmesh/mask.hpp"
+#include "roughmesh/mesh_io.hpp"
 #include "roughmesh/surface.hpp"
 
 namespace roughmesh {
@@ -26,30 +30,50 @@ enum class VolumeChoice {
 
 std::string_view name(VolumeChoice choice);
 
-/// Lengths are in the unit of the mesh, angles in degrees (they are typed by people).
-struct RoughenOptions {
-  std::string input = {};
-  std::string checksum = {};
-  std::string output = {};
+/// A mask of a job file.
+using Mask = std::variant<BoxMask, SphereMask, FormulaMask>;
+
+/// How one surface becomes rough. Lengths are in the unit of the mesh, angles in degrees (they are
+/// typed by people).
+struct Roughness {
   std::vector<std::string> group = {};
   double rms = 0;
   std::vector<double> length = {};
   Family acf = Family::gaussian;
   LengthDefinition length_definition = LengthDefinition::formula;
   std::optional<double> nu = {}, hurst = {}, rolloff = {}, power = {}, alpha = {};
+  std::string table = {};
   double angle = 0;
-  DistanceKind distance = DistanceKind::euclidean;
+  std::optional<DistanceKind> distance = {};
+  std::vector<double> period = {};
+  std::uint64_t seed = 0;
+  double edge_angle = 40;
+  bool flip = false;
+  std::vector<std::string> fixed = {};
+  std::vector<std::string> fade = {};  ///< "WIDTH" or "WIDTH:GROUP"
+  std::vector<Mask> mask = {};
+};
+
+/// A whole run. Job files may give `surfaces` as several tables; the command line describes one.
+struct RoughenOptions {
+  std::string input = {};
+  std::string checksum = {};
+  std::string output = {};
+  std::vector<Roughness> surfaces = {Roughness{}};  ///< at least one; no face may be in two
   std::string method = "auto";
   double tolerance = 1e-4;
-  std::uint64_t seed = 0;
   std::uint64_t realizations = 1;
   std::uint64_t first = 0;
   VolumeChoice volume = VolumeChoice::move;
-  double edge_angle = 40;
-  bool flip = false;
   bool allow_invalid = false;
   std::string unit = {};
   std::string report = {};
+  std::optional<MeshFormat> format = {};
+  bool ascii = false, binary = false;
+  std::optional<double> mesh_size = {};
+  std::string gmsh = "gmsh";
+  double timeout = 600;
+  bool trust_scripts = false;
   int threads = 0;
   bool quiet = false;
 };
@@ -61,71 +85,112 @@ struct OptionText {
   std::string_view help;
 };
 
-/// Calls visit(OptionText, member) for every option, in the order of --help. `Options` is
-/// RoughenOptions, const or not.
+/// Calls visit(OptionText, member) for every option of the autocorrelation function.
 template <class Options, class Visit>
-void for_each_option(Options& options, Visit&& visit) {
-  visit(OptionText{"input", "INPUT", "mesh to roughen: .msh (2.2, 4.1), .stl, .ply2"},
-        options.input);
-  visit(
-      OptionText{"checksum", "HEX",
-                 "checksum of INPUT, as reports have it; another file is roughened with a warning"},
-      options.checksum);
-  visit(
-      OptionText{
-          "output", "OUTPUT",
-          "file to write, in the format of INPUT or .vtu; {realization} becomes the number of "
-          "the realization, {realization:04} with leading zeros"},
-      options.output);
-  visit(
-      OptionText{
-          "group", "NAME|NUMBER|all",
-          "physical group to roughen, repeatable; default: the only surface group, or the whole "
-          "boundary of a mesh without groups"},
-      options.group);
+void for_each_autocorrelation_option(Options& o, Visit&& visit) {
   visit(OptionText{"rms", "VALUE", "rms roughness Rq, in the length unit of the mesh; required"},
-        options.rms);
-  visit(
-      OptionText{
-          "length", "L[,LY[,LZ]]",
-          "correlation length, in the length unit of the mesh; three for an anisotropic field "
-          "(of two, the second counts for y and z; inf makes streaks)"},
-      options.length);
-  visit(OptionText{"acf", "FAMILY", "autocorrelation function"}, options.acf);
-  visit(OptionText{"length_definition", "NAME", "what --length is"}, options.length_definition);
-  visit(OptionText{"nu", "N", "smoothness of matern, > 0"}, options.nu);
-  visit(OptionText{"hurst", "H", "Hurst exponent of self-affine, between 0 and 1"}, options.hurst);
+        o.rms);
+  visit(OptionText{
+            "length", "L[,LY[,LZ]]",
+            "correlation length, in the length unit of the mesh; three for an anisotropic field "
+            "(of two, the second counts for y and z; inf makes streaks)"},
+        o.length);
+  visit(OptionText{"acf", "FAMILY", "autocorrelation function"}, o.acf);
+  visit(OptionText{"length_definition", "NAME", "what --length is"}, o.length_definition);
+  visit(OptionText{"nu", "N", "smoothness of matern, > 0"}, o.nu);
+  visit(OptionText{"hurst", "H", "Hurst exponent of self-affine, between 0 and 1"}, o.hurst);
   visit(OptionText{"rolloff", "LAMBDA",
                    "roll-off wavelength of self-affine, in the length unit of the mesh, instead of "
                    "--length"},
-        options.rolloff);
-  visit(OptionText{"power", "P", "exponent of stretched, > 0 and at most 2"}, options.power);
-  visit(OptionText{"alpha", "A", "exponent of rational-quadratic, > 0"}, options.alpha);
+        o.rolloff);
+  visit(OptionText{"power", "P", "exponent of stretched, > 0 and at most 2"}, o.power);
+  visit(OptionText{"alpha", "A", "exponent of rational-quadratic, > 0"}, o.alpha);
+  visit(OptionText{"table", "FILE",
+                   "two columns, distance and autocorrelation, for --acf table instead of --length"},
+        o.table);
   visit(OptionText{"angle", "DEG", "turns the axes of anisotropic lengths about z, in degrees"},
-        options.angle);
-  visit(OptionText{"distance", "KIND", "distance that correlation depends on"}, options.distance);
-  visit(OptionText{"method", "NAME", "sampling method: auto, cholesky"}, options.method);
-  visit(OptionText{"tolerance", "T", "covariance error that is accepted without a warning"},
-        options.tolerance);
-  visit(OptionText{"seed", "S", "seed of the ensemble"}, options.seed);
-  visit(OptionText{"realizations", "N", "number of meshes to make"}, options.realizations);
-  visit(OptionText{"first", "K", "number of the first realization"}, options.first);
-  visit(OptionText{"volume", "HOW", "what the interior of a volume mesh does"}, options.volume);
+        o.angle);
+  visit(OptionText{"distance", "KIND",
+                   "distance that correlation depends on; default: euclidean, or periodic where "
+                   "the mesh links moving nodes"},
+        o.distance);
+  visit(OptionText{"period", "LX,LY,LZ",
+                   "periods of periodic and minimum-image, 0 for an axis without; default: those "
+                   "of the mesh's periodic links"},
+        o.period);
+}
+
+/// Likewise for every option of one surface, in the order of --help. `Options` is Roughness, const
+/// or not.
+template <class Options, class Visit>
+void for_each_surface_option(Options& o, Visit&& visit) {
+  visit(OptionText{"group", "NAME|NUMBER|all",
+                   "physical group to roughen, repeatable; default: the only group of faces (lines "
+                   "of a planar mesh), or the whole boundary of a mesh without groups"},
+        o.group);
+  for_each_autocorrelation_option(o, visit);
+  visit(OptionText{"seed", "S", "seed of the ensemble"}, o.seed);
   visit(OptionText{"edge_angle", "DEG",
                    "edges with a larger angle between normals are sharp, in degrees"},
-        options.edge_angle);
-  visit(OptionText{"flip", "", "turn the normals round: positive heights go inward"}, options.flip);
+        o.edge_angle);
+  visit(OptionText{"flip", "", "turn the normals round: positive heights go inward"}, o.flip);
+  visit(OptionText{"fixed", "GROUP", "physical group whose nodes stay, repeatable"}, o.fixed);
+  visit(OptionText{"fade", "WIDTH[:GROUP]",
+                   "heights fall to zero over WIDTH towards the border of the surface, or towards "
+                   "GROUP; repeatable"},
+        o.fade);
+  visit(OptionText{"mask", "", "weights by box, sphere or formula; job files only"}, o.mask);
+}
+
+/// Likewise for every option that says how files are read and written.
+template <class Options, class Visit>
+void for_each_file_option(Options& o, Visit&& visit) {
+  visit(OptionText{"format", "NAME", "format of OUTPUT, where its extension does not tell it"},
+        o.format);
+  visit(OptionText{"ascii", "", "write OUTPUT as text"}, o.ascii);
+  visit(OptionText{"binary", "", "write OUTPUT as binary"}, o.binary);
+  visit(OptionText{"mesh_size", "H",
+                   "mesh size for CAD input; default: correlation length / 2.5. Scripts keep their "
+                   "own without it"},
+        o.mesh_size);
+  visit(OptionText{"gmsh", "PATH", "the gmsh program, which meshes CAD files and scripts"}, o.gmsh);
+  visit(OptionText{"timeout", "S", "seconds that gmsh may take"}, o.timeout);
+  visit(OptionText{"trust_scripts", "",
+                   "run geometry scripts that call programs or read and write other files"},
+        o.trust_scripts);
+}
+
+/// Likewise for every option of a run.
+template <class Options, class Visit>
+void for_each_run_option(Options& o, Visit&& visit) {
+  visit(OptionText{"input", "INPUT",
+                   "mesh to roughen (docs/files.md lists the formats), CAD file (.step, .brep) or "
+                   "geometry script (.geo)"},
+        o.input);
+  visit(OptionText{"checksum", "HEX",
+                   "checksum of INPUT, as reports have it; another file is roughened with a "
+                   "warning"},
+        o.checksum);
+  visit(OptionText{"output", "OUTPUT",
+                   "file to write, in the format of its extension; {realization} becomes the "
+                   "number of the realization, {realization:04} with leading zeros"},
+        o.output);
+  visit(OptionText{"method", "NAME", "sampling method: auto, cholesky"}, o.method);
+  visit(OptionText{"tolerance", "T", "covariance error that is accepted without a warning"},
+        o.tolerance);
+  visit(OptionText{"realizations", "N", "number of meshes to make"}, o.realizations);
+  visit(OptionText{"first", "K", "number of the first realization"}, o.first);
+  visit(OptionText{"volume", "HOW", "what the interior of a volume mesh does"}, o.volume);
   visit(OptionText{"allow_invalid", "", "write meshes with inverted elements too, with a warning"},
-        options.allow_invalid);
-  visit(OptionText{"unit", "NAME", "name of the length unit, repeated in the report"},
-        options.unit);
-  visit(
-      OptionText{
-          "report", "FILE",
-          "report to write (default: OUTPUT without {realization} and extension, + .report.json)"},
-      options.report);
-  visit(OptionText{"threads", "T", "number of threads; 0: one per core"}, options.threads);
-  visit(OptionText{"quiet", "", "print nothing on success"}, options.quiet);
+        o.allow_invalid);
+  visit(OptionText{"unit", "NAME", "name of the length unit, repeated in the report"}, o.unit);
+  visit(OptionText{"report", "FILE",
+                   "report to write (default: OUTPUT without {realization} and extension, + "
+                   ".report.json)"},
+        o.report);
+  for_each_file_option(o, visit);
+  visit(OptionText{"threads", "T", "number of threads; 0: one per core"}, o.threads);
+  visit(OptionText{"quiet", "", "print nothing on success"}, o.quiet);
 }
 
 /// Every value of an enumeration among the options, in the order of --help. `name` spells each.
@@ -133,9 +198,9 @@ template <class Enum>
 struct Choices;
 template <>
 struct Choices<Family> {
-  static constexpr std::array values = {Family::gaussian,  Family::exponential,
-                                        Family::matern,    Family::self_affine,
-                                        Family::stretched, Family::rational_quadratic};
+  static constexpr std::array values = {
+      Family::gaussian,  Family::exponential,        Family::matern, Family::self_affine,
+      Family::stretched, Family::rational_quadratic, Family::table};
 };
 template <>
 struct Choices<LengthDefinition> {
@@ -144,11 +209,21 @@ struct Choices<LengthDefinition> {
 };
 template <>
 struct Choices<DistanceKind> {
-  static constexpr std::array values = {DistanceKind::euclidean, DistanceKind::great_circle};
+  static constexpr std::array values = {
+      DistanceKind::euclidean, DistanceKind::great_circle, DistanceKind::periodic,
+      DistanceKind::minimum_image, DistanceKind::curve};
 };
 template <>
 struct Choices<VolumeChoice> {
   static constexpr std::array values = {VolumeChoice::move, VolumeChoice::none};
+};
+template <>
+struct Choices<MeshFormat> {
+  static constexpr std::array values = {
+      MeshFormat::msh2,   MeshFormat::msh4,    MeshFormat::stl, MeshFormat::ply,
+      MeshFormat::ply2,   MeshFormat::obj,     MeshFormat::off, MeshFormat::abaqus,
+      MeshFormat::nastran, MeshFormat::unv,    MeshFormat::medit, MeshFormat::su2,
+      MeshFormat::vtk,    MeshFormat::vtu};
 };
 
 /// Checks every option that can be checked without the mesh.
@@ -156,7 +231,9 @@ struct Choices<VolumeChoice> {
 void check_options(const RoughenOptions& options);
 
 /// Options from a job file: TOML, or JSON (an object of options, or the report of an earlier run,
-/// whose "request" is taken). Options that the file does not name keep their defaults.
+/// whose "request" is taken). Options that the file does not name keep their defaults. Options of a
+/// surface stand at the top, or in one table `surface` for each of several; what such a table does
+/// not name, it takes from the top.
 /// @throws InputError   unknown key, value of the wrong type
 /// @throws FormatError  neither TOML nor JSON
 RoughenOptions read_job(const std::filesystem::path& path);
@@ -168,8 +245,15 @@ std::string output_path(const std::string& output, std::uint64_t realization);
 std::string report_path(const RoughenOptions& options);
 
 // What the stages need, taken from the options.
-AutocorrelationOptions autocorrelation_options(const RoughenOptions& options);
-SurfaceOptions surface_options(const RoughenOptions& options);
+AutocorrelationOptions autocorrelation_options(const Roughness& roughness);
+SurfaceOptions surface_options(const Roughness& roughness);
+MaskOptions mask_options(const Roughness& roughness);  ///< @throws InputError  a fade without width
 FieldOptions field_options(const RoughenOptions& options);
+WriteOptions write_options(const RoughenOptions& options);
+GeometryOptions geometry_options(const RoughenOptions& options);
+
+/// May two surfaces of a run carry one field, evaluated on both? True where all that the field
+/// depends on is equal: seed, autocorrelation, distance.
+bool same_field(const Roughness& a, const Roughness& b);
 
 }  // namespace roughmesh

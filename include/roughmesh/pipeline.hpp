@@ -41,12 +41,9 @@ Report roughen(const Mesh& mesh, const RoughenOptions& options, const Deliver& d
 /// Heights, normals and displacements as point data, for files that carry them.
 std::vector<PointField> point_fields(const RoughMesh& rough);
 
-/// Distance that the options ask for, on these points, and the autocorrelation that goes with it:
-/// of anisotropic lengths, the first finite one.
-struct FieldModel {
-  Autocorrelation autocorrelation;
-  Distance distance;
-};
-FieldModel field_model(const RoughenOptions& options, std::span<const Vec3> points);
+/// Correlation between the points of a surface, by the distance that the request asks for and the
+/// autocorrelation that goes with it: of anisotropic lengths, that of the first finite one.
+/// @throws InputError  periodic and minimum-image without a period
+Correlation field_model(const Roughness& request, const Surface& surface);
 
 }  // namespace roughmesh

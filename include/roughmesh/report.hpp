@@ -14,18 +14,49 @@
 
 namespace roughmesh {
 
-/// One rough mesh. Lengths in the unit of the mesh.
-struct RealizationReport {
-  std::uint64_t index = 0;
-  std::string path;  ///< empty when it was not written to a file
-  HeightStatistics statistics;
+/// What Sq is and should be over the part of a surface that a mask leaves whole.
+struct UnfadedSq {
+  double sq = 0;
+  double expected = 0;
+  double expected_std = 0;
+};
+
+/// Heights of one surface in one realization. Lengths in the unit of the mesh.
+struct SurfaceStatistics {
+  HeightStatistics heights;
   double sq_expected = 0;      ///< mean that Sq must have on this surface
   double sq_expected_std = 0;  ///< standard deviation that Sq must have on this surface
+  /// Over the points of weight 1; absent where no mask lowers any, or leaves none.
+  std::optional<UnfadedSq> unfaded;
+};
+
+/// One rough mesh.
+struct RealizationReport {
+  std::uint64_t index = 0;
+  std::string path;                         ///< empty when it was not written to a file
+  std::vector<SurfaceStatistics> surfaces;  ///< as Report::surfaces
   std::int64_t inverted_elements = 0;
   double min_quality = 0;
   double min_quality_before = 0;
   std::optional<std::int64_t> self_intersections;  ///< absent: not counted
   VolumeMethod volume_method = VolumeMethod::none;
+};
+
+/// One surface of the mesh, its field and what the mesh can carry of it.
+struct SurfaceReport {
+  int dimension = 2;
+  std::vector<std::string> groups;
+  std::int64_t nodes = 0, elements = 0;
+  std::int64_t masked_nodes = 0;  ///< of weight below 1
+  double area = 0;                ///< a length for a curve
+  MeshSize mesh_size;
+  std::int64_t components = 0, border_edges = 0, sharp_edges = 0, nonmanifold_edges = 0;
+
+  FieldSummary field;
+  Audit audit;
+  EquivalentLengths lengths;
+  std::optional<double> fit_residual;  ///< of a table, as Autocorrelation::fit_residual()
+  Resolution resolution;
 };
 
 /// Seconds of wall-clock time, summed over realizations. `field` is preparation plus heights.
@@ -41,19 +72,7 @@ struct Report {
   std::int64_t n_elements = 0;
   // request
   RoughenOptions request;
-  // surface
-  std::vector<std::string> surface_groups;
-  std::int64_t surface_nodes = 0;
-  std::int64_t surface_elements = 0;
-  double surface_area = 0;
-  MeshSize mesh_size;
-  std::int64_t surface_components = 0, border_edges = 0, sharp_edges = 0, nonmanifold_edges = 0;
-  // field
-  FieldSummary field;
-  Audit audit;
-  EquivalentLengths lengths;
-  Resolution resolution;
-
+  std::vector<SurfaceReport> surfaces;  ///< as request.surfaces
   std::vector<RealizationReport> realizations;
   std::vector<std::string> warnings;
   Timings timings;

@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "roughmesh/autocorrelation.hpp"
-#include "roughmesh/distance.hpp"
+#include "roughmesh/correlation.hpp"
 #include "roughmesh/surface.hpp"
 
 namespace roughmesh {
@@ -33,8 +32,8 @@ struct Resolution {
 };
 
 /// Everything in the result is per unit of Rq or independent of it.
-Resolution assess_resolution(const Surface& surface, const Autocorrelation& autocorrelation,
-                             const Distance& distance);
+/// @throws InputError  the correlation is not one of the points of this surface
+Resolution assess_resolution(const Surface& surface, const Correlation& correlation);
 
 /// One line for each limit that rms roughness `rq` on this surface passes: coarse mesh, rough
 /// spectrum, heights beyond the radius of curvature. Empty when all is well. The limits are those

@@ -4,8 +4,7 @@
 
 #include <span>
 
-#include "roughmesh/autocorrelation.hpp"
-#include "roughmesh/distance.hpp"
+#include "roughmesh/correlation.hpp"
 #include "roughmesh/surface.hpp"
 
 namespace roughmesh {
@@ -20,7 +19,11 @@ struct HeightStatistics {
 };
 
 /// @param heights  n numbers, in the order of surface.points
-HeightStatistics height_statistics(const Surface& surface, std::span<const double> heights);
+/// @param areas    n node areas that count instead of surface.areas, or none: points of area 0 are
+///                 left out, like those that full_weight_areas leaves out
+/// @throws InputError  other numbers of them; areas that are negative, not finite or all 0
+HeightStatistics height_statistics(const Surface& surface, std::span<const double> heights,
+                                   std::span<const double> areas = {});
 
 /// What Sq must be over realizations on this surface, for a field of unit rms height.
 struct ExpectedSq {
@@ -28,10 +31,18 @@ struct ExpectedSq {
   double standard_deviation = 0;  ///< of Sq / Rq
 };
 
-/// From rho alone (docs/math.md, eq. 19 and 20): below 1 because Sq is taken about the mean of a
-/// finite surface. Exact sums up to 2,000 points, beyond that over 256 area-weighted source points:
-/// linear time.
-ExpectedSq expected_sq(const Surface& surface, const Autocorrelation& autocorrelation,
-                       const Distance& distance);
+/// What part of a surface Sq is taken over, and of which field.
+struct SqOptions {
+  std::span<const double> weights = {};  ///< n mask weights of the field in [0, 1]; none: all 1
+  std::span<const double> areas = {};    ///< n node areas, as for height_statistics
+};
+
+/// From rho alone (docs/math.md, eq. 19, 20 and 44): below 1 because Sq is taken about the mean of
+/// a finite surface. Exact sums up to 2,000 points, beyond that over 256 area-weighted source
+/// points: linear time.
+/// @throws InputError  weights or areas out of range, or other numbers of them; a correlation that
+///                     is not one of the points of this surface
+ExpectedSq expected_sq(const Surface& surface, const Correlation& correlation,
+                       const SqOptions& options = {});
 
 }  // namespace roughmesh

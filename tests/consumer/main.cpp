@@ -10,7 +10,8 @@
 int main() {
   using namespace roughmesh;
   const std::vector<Vec3> points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
-  const FieldSampler sampler(points, Autocorrelation({.length = 1.0}), Distance::euclidean());
+  const FieldSampler sampler(
+      Correlation(points, Autocorrelation({.length = 1.0}), Distance::euclidean()));
   for (const double height : sampler.heights(1, 0))
     if (!std::isfinite(height)) return 1;
   std::cout << "roughmesh " << version() << ": covariance error "

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Points of a surface that are images of each other and carry one height.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "roughmesh/error.hpp"
+#include "roughmesh/mesh.hpp"
+#include "roughmesh/surface.hpp"
+
+namespace roughmesh {
+
+struct PeriodicPartners {
+  /// n points: the first of all points, in canonical order, that this one is an image of; itself
+  /// where it is none. Master of a master is itself.
+  std::vector<Index> master;
+  /// n flags: an image by something other than a translation by periods (a rotation, an oblique
+  /// lattice). Such points keep normals of their own, so equal heights do not make equal
+  /// displacements: heights must fade to zero there.
+  std::vector<char> rotated;
+  /// n flags: linked to a node that is on no chosen face and so stays: heights must fade to zero.
+  std::vector<char> unpaired;
+  Vec3 period = Vec3::Zero();  ///< 0 along axes that are not periodic
+};
+
+/// Partners by the links of the mesh between nodes of the surface, whatever side they call the
+/// master, chains followed to the end. A link whose nodes differ by one vector along a coordinate
+/// axis sets the period of that axis. Without a link to the surface no point is an image.
+///
+/// @throws InputError  nodes that differ by 1e-9 of the period from where their link puts them; two
+///                     periods along one axis
+PeriodicPartners linked_partners(const Mesh& mesh, const Surface& surface);
+
+/// Partners by position: points equal to 1e-9 of the period, modulo the period. Sorts: n log n.
+///
+/// @param period  for each axis, 0: not periodic along it
+/// @throws InputError  a period that is negative or not finite, no period at all, one that no two
+///                     points differ by
+PeriodicPartners matched_partners(const Surface& surface, const Vec3& period);
+
+/// Both: linked partners, and where a period is given also those matched by it together with the
+/// periods of the links.
+///
+/// @throws InputError  as both; a period that is given and not that of the links, to 1e-9
+PeriodicPartners periodic_partners(const Mesh& mesh, const Surface& surface,
+                                   const std::optional<Vec3>& period = {});
+
+std::vector<Index> masters(const PeriodicPartners& partners);  ///< ascending points
+
+/// Values of the masters, in the order of masters(), for all n points.
+/// @throws InputError  another number of values than of masters
+std::vector<double> expand(const PeriodicPartners& partners, std::span<const double> of_masters);
+
+/// The surface with one normal for each point and its images: from the faces of all of them
+/// together (docs/math.md, eq. 31). Rotated points keep their own.
+///
+/// @throws InputError  partners of another surface; a surface of dimension 1; normals that cancel
+Surface with_partner_normals(const Surface& surface, const PeriodicPartners& partners);
+
+}  // namespace roughmesh

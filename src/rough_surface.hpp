@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the pipeline prepares once: the surfaces that become rough, and the fields on them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "roughmesh/correlation.hpp"
+#include "roughmesh/field.hpp"
+#include "roughmesh/mesh.hpp"
+#include "roughmesh/options.hpp"
+#include "roughmesh/periodic.hpp"
+#include "roughmesh/statistics.hpp"
+#include "roughmesh/surface.hpp"
+
+namespace roughmesh::detail {
+
+/// How one surface becomes rough: all that does not change from one realization to the next.
+struct SurfacePlan {
+  Roughness request;               ///< as used: distance and period filled in
+  std::vector<double> weights;     ///< n_points, from the masks
+  std::size_t field = 0;           ///< position among the fields
+  std::vector<Index> field_point;  ///< n_points positions among the points of the field
+};
+
+/// A field, and where it is known. Surfaces with the same_field() are parts of one: what they have
+/// in common is equal on both, and what comes close is correlated.
+struct FieldPlan {
+  Correlation correlation;        ///< between the points of all its surfaces together
+  std::vector<Index> masters;     ///< points that carry heights; all of them without periodic links
+  std::vector<Index> sampled_at;  ///< for each point, the position of its master among `masters`
+};
+
+struct RoughSurfaces {
+  std::vector<Surface> surfaces;   ///< in the order of the requests
+  std::vector<SurfacePlan> plans;  ///< one for each surface
+  std::vector<FieldPlan> fields;
+};
+
+/// Selects the surfaces and finds out which fields they need. Draws nothing yet.
+/// @throws InputError  what select_surface, mask_weights and Correlation throw; a periodic link
+///                     that the distance of the surface does not respect
+RoughSurfaces prepare_surfaces(const Mesh& mesh, std::span<const Roughness> requests);
+
+/// Correlation between the points of one surface.
+Correlation correlation_of(const SurfacePlan& surface, std::span<const FieldPlan> fields);
+
+/// Heights z_i = m_i Rq d_i of the points of one surface, from the samples at its field's masters
+/// (docs/math.md, eq. 3 and 43).
+std::vector<double> heights_of(const SurfacePlan& surface, const FieldPlan& field,
+                               std::span<const double> samples);
+
+}  // namespace roughmesh::detail
