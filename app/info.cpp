@@ -35,7 +35,9 @@ std::int64_t n_elements_in(const Mesh& mesh, const PhysicalGroup& group) {
   return count;
 }
 
-const char* measure_of(const Surface& surface) { return surface.dimension == 1 ? "length" : "area"; }
+const char* measure_of(const Surface& surface) {
+  return surface.dimension == 1 ? "length" : "area";
+}
 
 /// Area (of lines: length) and edge lengths of a group, or why it has none.
 std::string surface_size(const Mesh& mesh, const PhysicalGroup& group) {
@@ -124,7 +126,8 @@ void print_limits(const Resolution& r, const std::string& unit) {
 
 /// Without a length asked for, the shortest the mesh carries.
 Roughness with_length(Roughness options, const Surface& surface) {
-  const bool has_length = !options.length.empty() || options.rolloff || options.acf == Family::table;
+  const bool has_length =
+      !options.length.empty() || options.rolloff || options.acf == Family::table;
   if (!has_length) options.length = {sizes_per_length * surface.mesh_size.median};
   return options;
 }

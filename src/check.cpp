@@ -281,7 +281,8 @@ MeshCheck check_mesh(const Mesh& mesh, std::span<const Vec3> moved) {
   summary.add(summarize_loose_faces(mesh, moved));
   MeshCheck check{summary.n_inverted, summary.min_quality, summary.n_curved, {}};
   for (const Bad& bad : summary.worst)
-    check.findings.push_back(make_finding({mesh.blocks[bad.block], mesh.nodes, moved, plane_normal}, bad));
+    check.findings.push_back(
+        make_finding({mesh.blocks[bad.block], mesh.nodes, moved, plane_normal}, bad));
   return check;
 }
 

@@ -41,8 +41,7 @@ Vec3 smallest_displacement(std::span<const Demand> demands) {
 // Moved nodes that move together: those at one point of a surface, and so on from each of them.
 class Groups {
  public:
-  Groups(std::span<const Surface> surfaces, std::span<const Index> moved)
-      : parent_(moved.size()) {
+  Groups(std::span<const Surface> surfaces, std::span<const Index> moved) : parent_(moved.size()) {
     std::iota(parent_.begin(), parent_.end(), 0);
     for (const Surface& surface : surfaces) {
       places_.push_back(places_of(surface, moved));
@@ -157,8 +156,8 @@ std::vector<Vec3> displace_nodes(std::span<const Surface> surfaces,
     demands.clear();
     auto next = first;
     for (; next != entries.end() && next->group == first->group; ++next)
-      demands.push_back({surfaces[next->surface].normals[next->point],
-                         heights[next->surface][next->point]});
+      demands.push_back(
+          {surfaces[next->surface].normals[next->point], heights[next->surface][next->point]});
     of_group[first->group] = smallest_displacement(demands);
     first = next;
   }

@@ -89,8 +89,7 @@ std::vector<FollowingNode> make_following(const ElementType& type,
   const int corners = n_corners(type.shape), serendipity = n_serendipity_nodes(type.shape);
   const auto edges = local_edges(type.shape);
   for (std::size_t k = 0; k < edges.size(); ++k)
-    following.push_back(
-        {corners + static_cast<int>(k), {{edges[k][0], 0.5}, {edges[k][1], 0.5}}});
+    following.push_back({corners + static_cast<int>(k), {{edges[k][0], 0.5}, {edges[k][1], 0.5}}});
   for (const LocalFace& face : faces)
     if (face.type.n_nodes == 9)
       following.push_back(middle_of(face.nodes[8], std::span(face.nodes).first(4),
@@ -98,8 +97,8 @@ std::vector<FollowingNode> make_following(const ElementType& type,
   const bool has_own_middle =
       type.shape == ElementShape::quadrangle || type.shape == ElementShape::hexahedron;
   if (has_own_middle && has_middle_nodes(type))
-    following.push_back(middle_of(type.n_nodes - 1, consecutive(0, corners),
-                                  consecutive(corners, serendipity)));
+    following.push_back(
+        middle_of(type.n_nodes - 1, consecutive(0, corners), consecutive(corners, serendipity)));
   return following;
 }
 

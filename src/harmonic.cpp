@@ -95,8 +95,7 @@ struct Adjacency {
 };
 
 template <class Visit>
-void for_each_unknown(std::span<const Simplex> simplices, const NodeRoles& roles,
-                      Visit&& visit) {
+void for_each_unknown(std::span<const Simplex> simplices, const NodeRoles& roles, Visit&& visit) {
   for (std::size_t t = 0; t < simplices.size(); ++t)
     for (const Index node : corners(simplices[t]))
       if (roles.unknown[node] >= 0) visit(static_cast<Index>(t), roles.unknown[node]);
@@ -203,8 +202,7 @@ void join(const std::vector<RowRange>& ranges, Index n_rows, Index n_columns,
 // the order of every sum is that of the simplices.
 class Assembly {
  public:
-  Assembly(std::span<const Vec3> nodes, std::span<const Simplex> simplices,
-           const NodeRoles& roles)
+  Assembly(std::span<const Vec3> nodes, std::span<const Simplex> simplices, const NodeRoles& roles)
       : nodes_(nodes),
         simplices_(simplices),
         roles_(roles),
@@ -265,8 +263,7 @@ void require_convergence(const Solver& solver) {
 }  // namespace
 
 HarmonicExtension::HarmonicExtension(std::span<const Vec3> nodes,
-                                     std::span<const Simplex> simplices,
-                                     const NodeRoles& roles) {
+                                     std::span<const Simplex> simplices, const NodeRoles& roles) {
   const Assembly assembly(nodes, simplices, roles);
   const auto n = static_cast<std::size_t>(roles.n_unknown);
   std::vector<RowRange> stiffness((n + rows_per_range - 1) / rows_per_range);

@@ -12,7 +12,8 @@
 
 namespace roughmesh::detail {
 
-/// Positions of the corners of a tetrahedron in an array of nodes; of a triangle, whose fourth is -1.
+/// Positions of the corners of a tetrahedron in an array of nodes; of a triangle, whose fourth is
+/// -1.
 using Simplex = std::array<Index, 4>;
 
 /// What is known about the displacement of each node. A node is unknown, given or, if neither
@@ -28,8 +29,8 @@ struct NodeRoles {
 ///
 ///     sum over simplices of  1/V * integral |grad u|^2             (docs/math.md, eq. 16)
 ///
-/// with u linear on each simplex, so that small ones deform least. Simplices are tetrahedra of volume
-/// V, or triangles of area V in one plane.
+/// with u linear on each simplex, so that small ones deform least. Simplices are tetrahedra of
+/// volume V, or triangles of area V in one plane.
 class HarmonicExtension {
  public:
   /// Nearly flat simplices, whose weight would drown all others, are left out; an unknown that

@@ -73,7 +73,7 @@ class Reader {
   void read_keyword(std::string_view line);
   void start(const AbaqusKeyword& keyword);
   void change_level(const AbaqusKeyword& keyword);
-  void start_nodes(const AbaqusKeyword& keyword);
+  void start_nodes();
   void start_elements(const AbaqusKeyword& keyword);
   void start_set(const AbaqusKeyword& keyword);
   void start_surface(const AbaqusKeyword& keyword);
@@ -177,7 +177,7 @@ void Reader::start(const AbaqusKeyword& keyword) {
   set_.reset();
   refuse_generator(scanner_, keyword);
   change_level(keyword);
-  if (keyword.name == "NODE") start_nodes(keyword);
+  if (keyword.name == "NODE") start_nodes();
   if (keyword.name == "ELEMENT") start_elements(keyword);
   if (keyword.name == "ELSET") start_set(keyword);
   if (keyword.name == "SURFACE") start_surface(keyword);
@@ -214,13 +214,15 @@ void Reader::claim_body() {
   meshed_part_ = body();
 }
 
-void Reader::start_nodes(const AbaqusKeyword&) {
+void Reader::start_nodes() {
   if (in_assembly()) return;
   claim_body();
   section_ = Section::nodes;
 }
 
+// Sets of elements that are not in the mesh are empty, but other sets may name them.
 void Reader::start_elements(const AbaqusKeyword& keyword) {
+  if (keyword.has("ELSET")) set_ = sets_.set(keyword.value("ELSET"), in_assembly(), false);
   if (in_assembly()) return;
   const std::string name = upper(keyword.value("TYPE"));
   const std::optional<AbaqusType> type = abaqus_type(name);
@@ -233,12 +235,11 @@ void Reader::start_elements(const AbaqusKeyword& keyword) {
   if (type_.role == AbaqusRole::ignored) return;
   claim_body();
   section_ = Section::elements;
-  if (keyword.has("ELSET")) set_ = sets_.set(keyword.value("ELSET"), false, false);
 }
 
 void Reader::start_set(const AbaqusKeyword& keyword) {
-  if (!is_of_mesh(keyword)) return;
-  section_ = Section::set;
+  if (!is_of_mesh(keyword) && !in_assembly()) return;
+  if (is_of_mesh(keyword)) section_ = Section::set;
   generates_ = keyword.has("GENERATE");
   if (keyword.value("ELSET").empty()) scanner_.fail("has no ELSET=NAME; give the set a name");
   set_ = sets_.set(keyword.value("ELSET"), in_assembly(), keyword.has("INTERNAL"));

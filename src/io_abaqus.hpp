@@ -11,8 +11,8 @@
 
 #include "element_table.hpp"
 #include "file_formats.hpp"
-#include "serendipity.hpp"
 #include "scanner.hpp"
+#include "serendipity.hpp"
 #include "text.hpp"
 
 namespace roughmesh::detail {

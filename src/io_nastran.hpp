@@ -3,14 +3,14 @@
 // "Bulk Data Entries" (also Simcenter Nastran and OptiStruct, which read the same).
 #pragma once
 
-#include <deque>
+#include <list>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "file_formats.hpp"
-#include "serendipity.hpp"
 #include "scanner.hpp"
+#include "serendipity.hpp"
 
 namespace roughmesh::detail {
 
@@ -22,8 +22,9 @@ struct BulkCard {
   std::vector<std::string_view> fields;  ///< without space; data() is null where the line has ended
   std::vector<std::string_view> lines;   ///< of the file, without their ends
   std::vector<bool> is_large;            ///< of each line
-  std::deque<std::string> expanded;      ///< lines with tabs, which go to the next multiple of 8
+  std::list<std::string> expanded;       ///< lines with tabs, which go to the next multiple of 8
 
+  void clear();
   std::string_view field(std::size_t i) const { return i < fields.size() ? fields[i] : ""; }
 };
 

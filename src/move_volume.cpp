@@ -141,12 +141,12 @@ void check_surfaces(const Mesh& mesh, std::span<const Surface> surfaces) {
   if (surfaces.empty()) throw InputError("no surface to move; give one or more");
   for (const Surface& surface : surfaces) {
     if (surface.dimension != surfaces.front().dimension)
-      throw InputError(
-          "rough curves and rough faces in one mesh; choose groups of one dimension");
+      throw InputError("rough curves and rough faces in one mesh; choose groups of one dimension");
     if (!surface.nodes.empty() && surface.nodes.back() >= mesh.n_nodes())
-      throw InputError(fmt::format("a surface with node number {} in a mesh of {} nodes; give "
-                                   "surfaces of this mesh",
-                                   surface.nodes.back(), mesh.n_nodes()));
+      throw InputError(
+          fmt::format("a surface with node number {} in a mesh of {} nodes; give "
+                      "surfaces of this mesh",
+                      surface.nodes.back(), mesh.n_nodes()));
   }
 }
 
@@ -163,8 +163,7 @@ std::string_view name(VolumeMethod method) {
   return method == VolumeMethod::harmonic ? "harmonic" : "none";
 }
 
-VolumeMover::VolumeMover(const Mesh& mesh, std::span<const Surface> surfaces,
-                         VolumeMethod method) {
+VolumeMover::VolumeMover(const Mesh& mesh, std::span<const Surface> surfaces, VolumeMethod method) {
   check_surfaces(mesh, surfaces);
   auto plan = std::make_unique<Plan>();
   plan->nodes = mesh.nodes;

@@ -55,11 +55,13 @@ Vec3 beside_line(const Vec3& direction) {
 
 // Through the first node, the one farthest from it and the one farthest from their line.
 Vec3 guess_normal(const Mesh& mesh, const std::vector<Index>& nodes, double extent) {
-  const Vec3 origin = mesh.nodes[*std::min_element(nodes.begin(), nodes.end(), [&](Index a, Index b) {
-    return comes_first(mesh.nodes[a], mesh.nodes[b]);
-  })];
+  const Vec3 origin =
+      mesh.nodes[*std::min_element(nodes.begin(), nodes.end(), [&](Index a, Index b) {
+        return comes_first(mesh.nodes[a], mesh.nodes[b]);
+      })];
   const Vec3 along =
-      mesh.nodes[farthest(mesh, nodes, [&](const Vec3& x) { return (x - origin).norm(); })] - origin;
+      mesh.nodes[farthest(mesh, nodes, [&](const Vec3& x) { return (x - origin).norm(); })] -
+      origin;
   const Vec3 t = along.normalized();
   const auto off_line = [&](const Vec3& x) { return t.cross(x - origin).norm(); };
   const Vec3 across = mesh.nodes[farthest(mesh, nodes, off_line)] - origin;

@@ -52,8 +52,7 @@ Buckets make_buckets(const Faces& faces, Index n_points) {
   std::vector<Index> next(buckets.offsets.begin(), buckets.offsets.end() - 1);
   for_each_side(faces, [&](Index face, const FaceSide& side) {
     const auto [smaller, larger] = std::minmax(side.from, side.to);
-    buckets.sides[next[smaller]++] = {
-        larger, side.corner, {face, is_forward(faces, face, side)}};
+    buckets.sides[next[smaller]++] = {larger, side.corner, {face, is_forward(faces, face, side)}};
   });
   return buckets;
 }

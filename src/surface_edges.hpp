@@ -20,8 +20,8 @@ struct Side {
 struct EdgeTable {
   /// n pairs, smaller first, in ascending order. An "edge" of a curve is a point, twice.
   std::vector<std::array<Index, 2>> points;
-  std::vector<Index> offsets = {0};          ///< n + 1 positions in sides
-  std::vector<Side> sides;                   ///< of each edge, in the order of the faces
+  std::vector<Index> offsets = {0};   ///< n + 1 positions in sides
+  std::vector<Side> sides;            ///< of each edge, in the order of the faces
   std::vector<Index> edge_of_corner;  ///< for each of faces.corners, the edge that starts there
 
   Index size() const { return static_cast<Index>(points.size()); }

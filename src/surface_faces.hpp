@@ -17,7 +17,7 @@ struct Faces {
   Vec3 plane_normal = Vec3::Zero();  ///< of the plane of lines
   std::vector<Index> offsets = {0};  ///< n + 1 positions in corners
   std::vector<Index> corners;
-  std::vector<Tag> tags;          ///< n element numbers; 0 for derived boundary faces
+  std::vector<Tag> tags;  ///< n element numbers; 0 for derived boundary faces
   /// n numbers of their elements, counted in the order of the file; the facets of one element of
   /// order 2 have the same.
   std::vector<Index> file_order;

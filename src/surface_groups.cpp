@@ -31,8 +31,9 @@ struct Candidates {
 Candidates find_candidates(const Mesh& mesh) {
   const int largest = dimension(mesh);
   if (largest < lines_dimension)
-    throw InputError("the mesh has no elements beside points; give a mesh of lines, faces or "
-                     "volumes");
+    throw InputError(
+        "the mesh has no elements beside points; give a mesh of lines, faces or "
+        "volumes");
   if (largest > faces_dimension) return {mesh, {}, faces_dimension};
   Candidates candidates{mesh, fit_plane(mesh), faces_dimension};
   if (candidates.plane.is_planar() && n_elements(mesh, lines_dimension) > 0)
@@ -47,7 +48,8 @@ std::string reason_against_lines(const Candidates& candidates) {
     return "lines become rough in planar meshes only, and this one has volumes";
   const Index node = candidates.plane.farthest_node;
   return fmt::format(
-      "lines become rough in planar meshes only, and node {} of this one is {:.3g} out of the plane "
+      "lines become rough in planar meshes only, and node {} of this one is {:.3g} out of the "
+      "plane "
       "of the others",
       mesh.node_tags[node], candidates.plane.distance);
 }

@@ -158,7 +158,8 @@ std::vector<double> patch_volumes(const WeldedPoints& welded, const Faces& faces
   return volumes;
 }
 
-// Entities of the elements (of a curve: of the plane) on either side of a face, seen along its corners as given.
+// Entities of the elements (of a curve: of the plane) on either side of a face, seen along its
+// corners as given.
 struct Neighbours {
   std::optional<Tag> behind, ahead;
 
@@ -179,7 +180,8 @@ struct FacetPoints {
 };
 
 // Points of a facet of a side of a cell, -1 where the selection has none.
-FacetPoints facet_points(const CellFace& side, std::span<const int> facet, const WeldedPoints& welded) {
+FacetPoints facet_points(const CellFace& side, std::span<const int> facet,
+                         const WeldedPoints& welded) {
   FacetPoints result;
   for (const int k : facet) result.points[result.n++] = welded.point_of_node[side.nodes[k]];
   return result;

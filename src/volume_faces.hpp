@@ -28,9 +28,9 @@ struct CellFace {
 /// Side `face` of an element.
 CellFace cell_face(const ElementBlock& block, Index element, std::size_t face);
 
-/// Sides that belong to exactly one of the elements of dimension `cell_dimension`, by their corners;
-/// in the order of their smallest node, then of their other nodes. Elements with the same corners
-/// are one.
+/// Sides that belong to exactly one of the elements of dimension `cell_dimension`, by their
+/// corners; in the order of their smallest node, then of their other nodes. Elements with the same
+/// corners are one.
 std::vector<CellFace> boundary_faces(const Mesh& mesh, int cell_dimension);
 
 }  // namespace roughmesh::detail

@@ -43,7 +43,7 @@ const char* const two_cells =
     "*ELSET, ELSET=both, GENERATE\n"
     "1, 12\n"
     "*ELSET, ELSET=nested\n"
-    "RIGHT, 1, 30\n"
+    "RIGHT, 1, 30, springs\n"
     "*SURFACE, NAME=outside, TYPE=ELEMENT\n"
     "left part, S1\n"
     "12, s3\n"
@@ -192,7 +192,7 @@ TEST(Abaqus, SetsOfTheAssemblyBelongToItsPart) {
       "*Elset, elset=Set-1, instance=Plate-1, generate\n1, 1, 1\n"
       "*Elset, elset=elsewhere, instance=Wall-1\n1,\n"
       "*Surface, type=ELEMENT, name=Top\n_Top_S2, S2\n"
-      "*Surface, type=ELEMENT, name=Low\nPlate-1.Set-1, S1\n"
+      "*Surface, type=ELEMENT, name=Low\nPlate-1.Set-1, S1\nelsewhere, S1\nm, S1\n"
       "*Surface, type=NODE, name=Nodes\nfixed, 1.\n*End Assembly\n";
   const Mesh mesh = read_text(folder, "a.inp", bytes);
   EXPECT_EQ(mesh.n_nodes(), 4);

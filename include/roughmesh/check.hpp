@@ -25,7 +25,7 @@ struct MeshCheck {
   /// Elements of order 2 and more among those checked: only their corners were looked at, so that
   /// a curved side may still cross another.
   std::int64_t n_curved = 0;
-  std::vector<Finding> findings;       ///< the worst ones first, at most 10
+  std::vector<Finding> findings;  ///< the worst ones first, at most 10
 
   bool valid() const { return inverted_elements == 0; }
 };
@@ -38,9 +38,10 @@ double min_quality(const Mesh& mesh);
 /// An element is inverted, a face folded, unless every corner Jacobian that is not zero in `mesh`
 /// keeps its sign. The Jacobians of a face are seen along its normal, on the side where the normal
 /// was in `mesh`: all change sign where it turns by more than 90 degrees, one where a quadrangle
-/// becomes concave. Where `mesh` and `moved` lie in one plane, they are seen along its normal, and the
-/// faces are elements that invert. Checked, at their corners, are elements of the largest dimension and, beside volume elements,
-/// faces with a node that no volume element has, like shells.
+/// becomes concave. Where `mesh` and `moved` lie in one plane, they are seen along its normal, and
+/// the faces are elements that invert. Checked, at their corners, are elements of the largest
+/// dimension and, beside volume elements, faces with a node that no volume element has, like
+/// shells.
 /// @param moved  n_nodes positions, finite
 /// @throws NumericalError  a coordinate that is not finite
 MeshCheck check_mesh(const Mesh& mesh, std::span<const Vec3> moved);

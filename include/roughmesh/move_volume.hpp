@@ -20,14 +20,14 @@ std::string_view name(VolumeMethod method);
 
 /// Prepared once for a mesh and the surfaces that move; the linear system is assembled once.
 ///
-/// Elements of the dimension above that of the surfaces follow: volumes behind faces, the faces of a
-/// planar mesh beside lines. Their inner corners move by the harmonic extension of the displacement,
-/// each component solved with the stiffness of linear simplices weighted by 1 / volume
-/// (docs/math.md, eq. 16), so that small elements near the surface deform least. Other inner nodes of
-/// elements of order 2 follow the nodes of their edges and faces (eq. 38), which keeps a straight
-/// edge straight; that no curved element is inverted is not checked. Nodes of the domain's boundary
-/// and of every unselected face stay where they are, as do nodes that these separate from the
-/// surfaces. A mesh without such elements moves its surfaces only.
+/// Elements of the dimension above that of the surfaces follow: volumes behind faces, the faces of
+/// a planar mesh beside lines. Their inner corners move by the harmonic extension of the
+/// displacement, each component solved with the stiffness of linear simplices weighted by 1 /
+/// volume (docs/math.md, eq. 16), so that small elements near the surface deform least. Other inner
+/// nodes of elements of order 2 follow the nodes of their edges and faces (eq. 38), which keeps a
+/// straight edge straight; that no curved element is inverted is not checked. Nodes of the domain's
+/// boundary and of every unselected face stay where they are, as do nodes that these separate from
+/// the surfaces. A mesh without such elements moves its surfaces only.
 class VolumeMover {
  public:
   /// @param surfaces  one or more of this mesh, of one dimension, without a common face

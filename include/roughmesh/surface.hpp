@@ -37,7 +37,7 @@ struct MeshSize {
 /// by position, whatever numbers and order the file has. All that is random or computed on the
 /// surface is indexed by point.
 struct Surface {
-  int dimension = 2;          ///< 2: faces of a 3-D mesh; 1: lines of a planar one
+  int dimension = 2;  ///< 2: faces of a 3-D mesh; 1: lines of a planar one
   /// Of lines: unit normal of their plane; they run counter-clockwise about it around what lies
   /// behind them. Zero for faces.
   Vec3 plane_normal = Vec3::Zero();
@@ -54,7 +54,7 @@ struct Surface {
   std::vector<Index> face_offsets;
   std::vector<Index> face_points;  ///< corners of each face, oriented along the normals
   std::vector<Tag>
-      face_tags;  ///< n_faces element numbers in the file; 0 for a derived boundary face
+      face_tags;         ///< n_faces element numbers in the file; 0 for a derived boundary face
   Index n_elements = 0;  ///< elements they come from; fewer than faces where the order is 2
 
   double area = 0;                ///< of lines: length
