@@ -176,9 +176,10 @@ struct Parser {
     info =
         app.add_subcommand("info", "list groups and sizes, and what roughness the mesh can carry");
     add_options(*info, command.options,
-                {"input", "group", "rms", "length", "acf", "length_definition", "nu", "hurst",
-                 "rolloff", "power", "alpha", "table", "angle", "distance", "period", "edge_angle",
-                 "flip", "unit", "mesh_size", "gmsh", "timeout", "trust_scripts"});
+                {"input",     "group",    "rms",     "length",       "acf",   "length_definition",
+                 "nu",        "hurst",    "rolloff", "power",        "alpha", "table",
+                 "angle",     "distance", "period",  "edge_angle",   "flip",  "unit",
+                 "mesh_size", "gmsh",     "timeout", "trust_scripts"});
     info->footer(exit_codes);
   }
 

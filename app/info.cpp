@@ -126,7 +126,8 @@ void print_limits(const Resolution& r, const std::string& unit) {
 
 /// Without a length asked for, the shortest the mesh carries.
 Roughness with_length(Roughness options, const Surface& surface) {
-  const bool has_length = !options.length.empty() || options.rolloff || options.acf == Family::table;
+  const bool has_length =
+      !options.length.empty() || options.rolloff || options.acf == Family::table;
   if (!has_length) options.length = {sizes_per_length * surface.mesh_size.median};
   return options;
 }

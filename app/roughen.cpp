@@ -150,8 +150,8 @@ void make_realizations(const Mesh& mesh, const RoughenOptions& options,
     const std::string path = output_path(options.output, rough.realization);
     write_mesh(rough.mesh, path, with_fields(write_options(options), rough, path));
     if (report.realizations.size() == 1 && !losses.empty())
-      report.warnings.push_back(fmt::format("OUTPUT does not hold all of INPUT; left out: {}",
-                                            list_of(losses)));
+      report.warnings.push_back(
+          fmt::format("OUTPUT does not hold all of INPUT; left out: {}", list_of(losses)));
     report.realizations.back().path = path;
     file.update(report);
     progress.show(report.realizations.size());

@@ -85,7 +85,8 @@ int main() {
       fmt::print(
           "{:12} whole {:.3f} s (field {:.3f}, audit {:.3f}), rank {}, covariance error {:.1e}: "
           "reference / whole = {:.0f}, 25 s / whole = {:.0f} (bar: 20)\n",
-          name(kind), whole, report.timings.field, report.timings.audit, report.surfaces[0].field.rank,
-          report.surfaces[0].audit.covariance_error, reference / whole, seconds_of_published_script / whole);
+          name(kind), whole, report.timings.field, report.timings.audit,
+          report.surfaces[0].field.rank, report.surfaces[0].audit.covariance_error,
+          reference / whole, seconds_of_published_script / whole);
     }
 }

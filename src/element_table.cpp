@@ -81,11 +81,12 @@ void ElementTable::check_numbers(const Scanner& scanner) const {
   if (rows_.size() > static_cast<std::size_t>(largest_index))
     scanner.refuse("more elements than roughmesh handles; split the mesh");
   std::vector<Tag> numbers(rows_.size());
-  std::transform(rows_.begin(), rows_.end(), numbers.begin(), [](const Row& r) { return r.number; });
+  std::transform(rows_.begin(), rows_.end(), numbers.begin(),
+                 [](const Row& r) { return r.number; });
   if (const auto duplicate = NodeLookup(numbers).duplicate())
-    scanner.fail_at(row(*duplicate).offset,
-                    fmt::format("two elements have the number {}; renumber the mesh",
-                                row(*duplicate).number));
+    scanner.fail_at(
+        row(*duplicate).offset,
+        fmt::format("two elements have the number {}; renumber the mesh", row(*duplicate).number));
 }
 
 void ElementTable::fill(Mesh& mesh, const std::vector<std::uint64_t>& node_offsets,

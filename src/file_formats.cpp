@@ -9,12 +9,13 @@
 namespace roughmesh::detail {
 namespace {
 
-// Binary STL stands before its text, because headers of binary files like to begin with "solid";
-// formats that only their extension gives away stand last.
-constexpr std::array table = {
-    &msh4_format, &msh2_format,    &unv_format,    &stl_format,  &ply_format,
-    &off_format,  &vtk_format,     &medit_format,  &su2_format,  &nastran_format,
-    &abaqus_format, &ply2_format,  &obj_format,    &vtu_format};
+// Binary STL stands before its text, because headers of binary files like to begin with "solid".
+// Bulk data stands before MSH, because it may begin with a comment whose first sign is that of a
+// section. Formats that only their extension gives away stand last.
+constexpr std::array table = {&nastran_format, &msh4_format, &msh2_format,   &unv_format,
+                              &stl_format,     &ply_format,  &off_format,    &vtk_format,
+                              &medit_format,   &su2_format,  &abaqus_format, &ply2_format,
+                              &obj_format,     &vtu_format};
 
 std::string read_extensions() {
   std::string list;

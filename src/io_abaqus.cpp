@@ -45,9 +45,8 @@ AbaqusKeyword parse_abaqus_keyword(std::string_view text) {
       continue;
     }
     const std::size_t equals = std::min(field.find('='), field.size());
-    keyword.parameters.try_emplace(
-        without_spaces(field.substr(0, equals)),
-        unquoted(field.substr(std::min(equals + 1, field.size()))));
+    keyword.parameters.try_emplace(without_spaces(field.substr(0, equals)),
+                                   unquoted(field.substr(std::min(equals + 1, field.size()))));
   }
   return keyword;
 }
@@ -74,7 +73,7 @@ class Reader {
   void read_keyword(std::string_view line);
   void start(const AbaqusKeyword& keyword);
   void change_level(const AbaqusKeyword& keyword);
-  void start_nodes(const AbaqusKeyword& keyword);
+  void start_nodes();
   void start_elements(const AbaqusKeyword& keyword);
   void start_set(const AbaqusKeyword& keyword);
   void start_surface(const AbaqusKeyword& keyword);
@@ -101,9 +100,9 @@ class Reader {
 
   Level level_ = Level::model;
   Section section_ = Section::other;
-  std::string part_;                           ///< being read, in capitals
-  std::optional<std::string> meshed_part_;     ///< whose nodes are the mesh
-  std::map<std::string, std::string> parts_;   ///< of instances, both in capitals
+  std::string part_;                          ///< being read, in capitals
+  std::optional<std::string> meshed_part_;    ///< whose nodes are the mesh
+  std::map<std::string, std::string> parts_;  ///< of instances, both in capitals
   AbaqusType type_;
   std::optional<Index> set_;  ///< of the elements, or the one being listed
   bool generates_ = false;
@@ -115,11 +114,13 @@ class Reader {
 void refuse_generator(const Scanner& scanner, const AbaqusKeyword& keyword) {
   constexpr std::array generators = {"NGEN",  "NFILL",  "NCOPY",  "NMAP",
                                      "ELGEN", "ELCOPY", "SYSTEM", "IMPORT"};
-  if (keyword.name == "INCLUDE" || ((keyword.name == "NODE" || keyword.name == "ELEMENT" ||
-                                     keyword.name == "ELSET") && keyword.has("INPUT")))
-    scanner.refuse(fmt::format("*{} takes lines from the file {}, which is not read; put its lines "
-                               "into this file",
-                               printable(keyword.name), detail::quoted(keyword.value("INPUT"))));
+  if (keyword.name == "INCLUDE" ||
+      ((keyword.name == "NODE" || keyword.name == "ELEMENT" || keyword.name == "ELSET") &&
+       keyword.has("INPUT")))
+    scanner.refuse(
+        fmt::format("*{} takes lines from the file {}, which is not read; put its lines "
+                    "into this file",
+                    printable(keyword.name), detail::quoted(keyword.value("INPUT"))));
   if (std::find(generators.begin(), generators.end(), keyword.name) != generators.end() ||
       (keyword.name == "NODE" && keyword.has("SYSTEM") && upper(keyword.value("SYSTEM")) != "R"))
     scanner.refuse(fmt::format("*{} makes or moves nodes or elements, which is not followed; {}",
@@ -176,7 +177,7 @@ void Reader::start(const AbaqusKeyword& keyword) {
   set_.reset();
   refuse_generator(scanner_, keyword);
   change_level(keyword);
-  if (keyword.name == "NODE") start_nodes(keyword);
+  if (keyword.name == "NODE") start_nodes();
   if (keyword.name == "ELEMENT") start_elements(keyword);
   if (keyword.name == "ELSET") start_set(keyword);
   if (keyword.name == "SURFACE") start_surface(keyword);
@@ -206,36 +207,39 @@ bool Reader::is_of_mesh(const AbaqusKeyword& keyword) const {
 
 void Reader::claim_body() {
   if (meshed_part_ && *meshed_part_ != body())
-    refuse(fmt::format("parts {} and {} both have nodes, each in its own coordinates; {}, or put "
-                       "each part into a file of its own",
-                       detail::quoted(*meshed_part_), detail::quoted(body()), flat_file));
+    refuse(
+        fmt::format("parts {} and {} both have nodes, each in its own coordinates; {}, or put "
+                    "each part into a file of its own",
+                    detail::quoted(*meshed_part_), detail::quoted(body()), flat_file));
   meshed_part_ = body();
 }
 
-void Reader::start_nodes(const AbaqusKeyword&) {
+void Reader::start_nodes() {
   if (in_assembly()) return;
   claim_body();
   section_ = Section::nodes;
 }
 
+// Sets of elements that are not in the mesh are empty, but other sets may name them.
 void Reader::start_elements(const AbaqusKeyword& keyword) {
+  if (keyword.has("ELSET")) set_ = sets_.set(keyword.value("ELSET"), in_assembly(), false);
   if (in_assembly()) return;
   const std::string name = upper(keyword.value("TYPE"));
   const std::optional<AbaqusType> type = abaqus_type(name);
   if (!type)
-    refuse(fmt::format("elements of type {} are not handled; use others or leave them out of the "
-                       "file",
-                       detail::quoted(name)));
+    refuse(
+        fmt::format("elements of type {} are not handled; use others or leave them out of the "
+                    "file",
+                    detail::quoted(name)));
   type_ = *type;
   if (type_.role == AbaqusRole::ignored) return;
   claim_body();
   section_ = Section::elements;
-  if (keyword.has("ELSET")) set_ = sets_.set(keyword.value("ELSET"), false, false);
 }
 
 void Reader::start_set(const AbaqusKeyword& keyword) {
-  if (!is_of_mesh(keyword)) return;
-  section_ = Section::set;
+  if (!is_of_mesh(keyword) && !in_assembly()) return;
+  if (is_of_mesh(keyword)) section_ = Section::set;
   generates_ = keyword.has("GENERATE");
   if (keyword.value("ELSET").empty()) scanner_.fail("has no ELSET=NAME; give the set a name");
   set_ = sets_.set(keyword.value("ELSET"), in_assembly(), keyword.has("INTERNAL"));
@@ -268,7 +272,8 @@ void Reader::read_node(std::string_view line) {
   const std::vector<std::string_view> fields = comma_fields(line);
   const std::optional<Tag> number = whole_number(fields[0]);
   if (!number || *number < 0)
-    scanner_.fail(fmt::format("expected the number of a node, found {}", detail::quoted(fields[0])));
+    scanner_.fail(
+        fmt::format("expected the number of a node, found {}", detail::quoted(fields[0])));
   if (fields.size() < 2) scanner_.fail(fmt::format("node {} has no coordinates", *number));
   if (mesh_.nodes.size() >= static_cast<std::size_t>(largest_index))
     refuse("more nodes than roughmesh handles; split the mesh");
@@ -277,7 +282,8 @@ void Reader::read_node(std::string_view line) {
     if (fields[k].empty()) continue;
     const std::optional<double> value = fortran_real(fields[k]);
     if (!value)
-      scanner_.fail(fmt::format("node {}: {} is no finite number", *number, detail::quoted(fields[k])));
+      scanner_.fail(
+          fmt::format("node {}: {} is no finite number", *number, detail::quoted(fields[k])));
     x[static_cast<Eigen::Index>(k) - 1] = *value;
   }
   mesh_.nodes.push_back(x);
@@ -291,10 +297,11 @@ void Reader::read_element_line(std::string_view line) {
   for (const std::string_view field : comma_fields(line)) {
     const std::optional<Tag> number = whole_number(field);
     if (!number || *number < 0)
-      scanner_.fail(fmt::format("expected a number of an element or node, found {}", detail::quoted(field)));
+      scanner_.fail(
+          fmt::format("expected a number of an element or node, found {}", detail::quoted(field)));
     if (pending_.size() == n_due)
-      scanner_.fail(fmt::format("element {} has more than the {} nodes of its type", pending_[0],
-                                n_due - 1));
+      scanner_.fail(
+          fmt::format("element {} has more than the {} nodes of its type", pending_[0], n_due - 1));
     pending_.push_back(*number);
   }
   if (pending_.size() == n_due) finish_element();

@@ -11,8 +11,8 @@
 
 #include "element_table.hpp"
 #include "file_formats.hpp"
-#include "node_order.hpp"
 #include "scanner.hpp"
+#include "serendipity.hpp"
 #include "text.hpp"
 
 namespace roughmesh::detail {
@@ -33,8 +33,8 @@ std::vector<std::string_view> comma_fields(std::string_view line);
 
 enum class AbaqusRole : std::uint8_t {
   solid,
-  plane,   ///< faces of it are its edges
-  sheet,   ///< shells, membranes, rigid facets: a face of it is itself
+  plane,  ///< faces of it are its edges
+  sheet,  ///< shells, membranes, rigid facets: a face of it is itself
   line,
   ignored  ///< springs, masses, connectors, cohesive layers: kept in the file only
 };
@@ -44,7 +44,7 @@ struct AbaqusType {
 };
 /// @param name  in capitals
 std::optional<AbaqusType> abaqus_type(std::string_view name);
-const NodeOrder& abaqus_node_order();
+const SerendipityOrder& abaqus_node_order();
 
 /// *ELSET, *SURFACE and the ELSET of *ELEMENT: kept as they are listed, applied at the end.
 class AbaqusSets {

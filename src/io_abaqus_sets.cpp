@@ -146,7 +146,8 @@ void AbaqusSets::add_line(Index set, std::string_view line, bool generates, bool
   for (std::size_t k = 0; k < fields.size(); ++k) {
     if (k == 2 && fields[k].empty()) continue;
     const std::optional<Tag> number = whole_number(fields[k]);
-    if (!number) scanner_->fail(fmt::format("expected a whole number, found {}", quoted(fields[k])));
+    if (!number)
+      scanner_->fail(fmt::format("expected a whole number, found {}", quoted(fields[k])));
     numbers[k] = *number;
   }
   if (numbers[2] < 1 || numbers[0] < 0)
@@ -213,16 +214,15 @@ void AbaqusSets::apply_surface(const SurfaceItem& line, std::vector<Face>& faces
   std::vector<Index> elements;
   append(line.item, elements);
   for (const Index e : elements) {
-    const auto n_faces =
-        static_cast<int>(abaqus_faces(elements_->row(e).type.shape).size());
+    const auto n_faces = static_cast<int>(abaqus_faces(elements_->row(e).type.shape).size());
     const AbaqusRole role = roles_[static_cast<std::size_t>(e)];
-    const bool is_itself = role == AbaqusRole::line || (role == AbaqusRole::sheet && line.face == 0);
+    const bool is_itself =
+        role == AbaqusRole::line || (role == AbaqusRole::sheet && line.face == 0);
     if (is_itself)
       elements_->add_to_group(e, surfaces_[static_cast<std::size_t>(line.item.set)].group);
     else if (line.face > n_faces)
-      scanner_->fail_at(line.item.offset,
-                        fmt::format("element {} has no face S{}", elements_->row(e).number,
-                                    line.face));
+      scanner_->fail_at(line.item.offset, fmt::format("element {} has no face S{}",
+                                                      elements_->row(e).number, line.face));
     else
       apply_face(e, line.face, line, faces);
   }
@@ -268,8 +268,8 @@ void AbaqusSets::add_faces(std::vector<Face> faces) {
   if (number > std::numeric_limits<Tag>::max() - static_cast<Tag>(faces.size()))
     scanner_->fail("an element number is too large; renumber the mesh");
   for (std::size_t i = 0; i < faces.size(); ++i) {
-    const bool is_new = i == 0 || faces[i].element != faces[i - 1].element ||
-                        faces[i].face != faces[i - 1].face;
+    const bool is_new =
+        i == 0 || faces[i].element != faces[i - 1].element || faces[i].face != faces[i - 1].face;
     if (is_new) add_face_element(faces[i], ++number);
     elements_->add_to_group(static_cast<Index>(elements_->size()) - 1, faces[i].group);
   }
@@ -283,8 +283,7 @@ void AbaqusSets::add_face_element(const Face& face, Tag number) {
   for (const int corner : corners) nodes.push_back(solid[static_cast<std::size_t>(corner)]);
   const std::size_t n_edges = corners.size() == 2 ? 1 : corners.size();
   for (std::size_t k = 0; row.type.order == 2 && k < n_edges; ++k) {
-    const int middle =
-        middle_node(row.type.shape, corners[k], corners[(k + 1) % corners.size()]);
+    const int middle = middle_node(row.type.shape, corners[k], corners[(k + 1) % corners.size()]);
     nodes.push_back(solid[static_cast<std::size_t>(middle)]);
   }
   elements_->add({serendipity_type(shape_of_face(corners), row.type.order), 0, number, row.offset},

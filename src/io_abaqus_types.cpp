@@ -57,8 +57,9 @@ constexpr std::array families = {
 };
 
 constexpr std::array<std::string_view, 19> ignored = {
-    "MASS", "ROTARYI", "SPRING", "DASHPOT", "CONN", "GAP",   "JOINT",  "ITS",          "ITT", "COH",
-    "DCOUP", "HEATCAP", "ISL",    "IRS",     "GK",   "DRAG3", "SPHERE", "DISTRIBUTING", "PSI"};
+    "MASS", "ROTARYI", "SPRING", "DASHPOT",      "CONN",    "GAP", "JOINT",
+    "ITS",  "ITT",     "COH",    "DCOUP",        "HEATCAP", "ISL", "IRS",
+    "GK",   "DRAG3",   "SPHERE", "DISTRIBUTING", "PSI"};
 
 constexpr std::array second_order = {
     SecondOrderNodes{ElementShape::line, "0 01 1"},
@@ -120,8 +121,8 @@ std::optional<AbaqusType> abaqus_type(std::string_view name) {
   return {};
 }
 
-const NodeOrder& abaqus_node_order() {
-  static const NodeOrder order(second_order);
+const SerendipityOrder& abaqus_node_order() {
+  static const SerendipityOrder order(second_order);
   return order;
 }
 

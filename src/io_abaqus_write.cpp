@@ -40,8 +40,8 @@ std::string type_name(const ElementType& type, bool plane) {
 std::string quoted_name(std::string name) {
   std::erase_if(name, [](char c) { return c == '"' || (c >= 0 && c < ' '); });
   const bool is_plain = std::all_of(name.begin(), name.end(), [](char c) {
-    return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
-           c == '_' || c == '-';
+    return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_' ||
+           c == '-';
   });
   return is_plain && !name.empty() ? name : '"' + name + '"';
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Nastran bulk data: GRID in small, large and free fields, and elements whose properties are groups.
+// Nastran bulk data: GRID in small, large and free fields, and elements whose properties are
+// groups.
 #include "io_nastran.hpp"
 
 #include <algorithm>
@@ -46,9 +47,9 @@ constexpr std::array element_cards = {
 };
 
 // Elements of areas and volumes whose nodes stand in another order or number.
-constexpr std::array<std::string_view, 12> unread = {
-    "CQUAD",  "CTRIAX",  "CTRIAX6", "CQUADX", "CQUADX4", "CQUADX8",
-    "CTRAX3", "CTRAX6", "CTRIA",   "CHEXCZ", "CPLSTN3", "CPLSTN4"};
+constexpr std::array<std::string_view, 12> unread = {"CQUAD",   "CTRIAX",  "CTRIAX6", "CQUADX",
+                                                     "CQUADX4", "CQUADX8", "CTRAX3",  "CTRAX6",
+                                                     "CTRIA",   "CHEXCZ",  "CPLSTN3", "CPLSTN4"};
 
 constexpr std::array second_order = {
     SecondOrderNodes{ElementShape::tetrahedron, "0 1 2 3 01 12 02 03 13 23"},
@@ -118,15 +119,16 @@ void Reader::read_card(const BulkCard& card) {
   if (card.name == "GRDSET") return require_basic(card, 2);
   if (const ElementCard* const kind = find_card(card.name)) return read_element(card, *kind);
   if (std::find(unread.begin(), unread.end(), card.name) != unread.end())
-    reader_.scanner().refuse(
-        fmt::format("{} elements are not handled; use others or leave them out of the file",
-                    card.name));
+    reader_.scanner().refuse(fmt::format(
+        "{} elements are not handled; use others or leave them out of the file", card.name));
   if (card.name.starts_with("INCLUDE"))
-    reader_.scanner().refuse("INCLUDE takes lines from a file that is not read; put its lines into "
-                             "this file");
+    reader_.scanner().refuse(
+        "INCLUDE takes lines from a file that is not read; put its lines into "
+        "this file");
   if (card.name.starts_with('='))
-    reader_.scanner().refuse("entries that repeat the one before (=) are not followed; save the "
-                             "file with each entry written out");
+    reader_.scanner().refuse(
+        "entries that repeat the one before (=) are not followed; save the "
+        "file with each entry written out");
 }
 
 Tag Reader::number(const BulkCard& card, std::size_t field, std::string_view what) const {
@@ -139,9 +141,10 @@ Tag Reader::number(const BulkCard& card, std::size_t field, std::string_view wha
 void Reader::require_basic(const BulkCard& card, std::size_t field) const {
   const std::string_view text = card.field(field);
   if (text.empty() || whole_number(text) == 0) return;
-  Scanner(*file_).refuse(fmt::format("{} {} is in coordinate system {}; save the mesh in the basic "
-                                     "one (0)",
-                                     card.name, printable(card.field(1)), printable(text)));
+  Scanner(*file_).refuse(
+      fmt::format("{} {} is in coordinate system {}; save the mesh in the basic "
+                  "one (0)",
+                  card.name, printable(card.field(1)), printable(text)));
 }
 
 void Reader::read_grid(const BulkCard& card) {
@@ -173,10 +176,10 @@ ElementType Reader::type_of(const BulkCard& card, const ElementCard& kind,
     n_middles += !card.field(first + static_cast<std::size_t>(k)).empty();
   if (n_middles == 0) return linear;
   if (n_middles < quadratic.n_nodes - linear.n_nodes)
-    fail(card, fmt::format("element {} has {} of the {} nodes on its edges: it is cut short, or give "
-                           "it all or none",
-                           printable(card.field(1)), n_middles,
-                           quadratic.n_nodes - linear.n_nodes));
+    fail(card,
+         fmt::format("element {} has {} of the {} nodes on its edges: it is cut short, or give "
+                     "it all or none",
+                     printable(card.field(1)), n_middles, quadratic.n_nodes - linear.n_nodes));
   return quadratic;
 }
 
@@ -236,15 +239,17 @@ bool has_grid(std::string_view bytes) {
   return false;
 }
 
+// Comments begin with $, as sections of MSH do; MSH that is called .bdf stays MSH.
 bool is_nastran(std::string_view bytes, std::string_view extension) {
+  if (bytes.substr(0, 4096).find("$MeshFormat") != bytes.npos) return false;
   if (extension == ".dat" || extension == ".fem") return has_grid(bytes);
   return extension == ".bdf" || extension == ".nas";
 }
 
 }  // namespace
 
-const NodeOrder& nastran_node_order() {
-  static const NodeOrder order(second_order);
+const SerendipityOrder& nastran_node_order() {
+  static const SerendipityOrder order(second_order);
   return order;
 }
 

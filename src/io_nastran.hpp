@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Parts of the Nastran bulk data reader and writer. Format: MSC Nastran Quick Reference Guide, "Bulk
-// Data Entries" (also Simcenter Nastran and OptiStruct, which read the same).
+// Parts of the Nastran bulk data reader and writer. Format: MSC Nastran Quick Reference Guide,
+// "Bulk Data Entries" (also Simcenter Nastran and OptiStruct, which read the same).
 #pragma once
 
-#include <deque>
+#include <list>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "file_formats.hpp"
-#include "node_order.hpp"
 #include "scanner.hpp"
+#include "serendipity.hpp"
 
 namespace roughmesh::detail {
 
@@ -22,8 +22,9 @@ struct BulkCard {
   std::vector<std::string_view> fields;  ///< without space; data() is null where the line has ended
   std::vector<std::string_view> lines;   ///< of the file, without their ends
   std::vector<bool> is_large;            ///< of each line
-  std::deque<std::string> expanded;      ///< lines with tabs, which go to the next multiple of 8
+  std::list<std::string> expanded;       ///< lines with tabs, which go to the next multiple of 8
 
+  void clear();
   std::string_view field(std::size_t i) const { return i < fields.size() ? fields[i] : ""; }
 };
 
@@ -55,7 +56,7 @@ std::string nastran_real_16(double value);  ///< as many digits as 16 characters
 /// A unit of the last digit of nastran_real_16 for numbers of this size.
 double spacing_16(double value);
 
-const NodeOrder& nastran_node_order();
+const SerendipityOrder& nastran_node_order();
 
 void write_patched_nastran(const Mesh& mesh, OutputFile& output);
 /// 0 where each GRID is in free fields, which hold all digits.

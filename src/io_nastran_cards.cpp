@@ -93,6 +93,13 @@ std::string_view without_comment(std::string_view line) {
   return line.substr(0, std::min(line.find('$'), line.size()));
 }
 
+void BulkCard::clear() {
+  fields.clear();
+  lines.clear();
+  is_large.clear();
+  expanded.clear();
+}
+
 void BulkReader::move_to_bulk() {
   const std::size_t start = scanner_.offset();
   while (!scanner_.at_end()) {
@@ -127,7 +134,7 @@ void BulkReader::add_line(BulkCard& card, std::string_view line) const {
 }
 
 bool BulkReader::next(BulkCard& card) {
-  card = {};
+  card.clear();
   comments_.clear();
   while (!scanner_.at_end()) {
     const std::size_t start = scanner_.offset();

@@ -117,8 +117,8 @@ void patch_free_fields(TextPatcher& patcher, const Move& move) {
 void patch_grid(TextPatcher& patcher, const MeshSource& source, const Move& move) {
   const BulkCard& card = move.card;
   if (card.is_free) return patch_free_fields(patcher, move);
-  const bool is_large_throughout = card.lines.size() == 2 && card.is_large[0] && card.is_large[1] &&
-                                   card.expanded.empty();
+  const bool is_large_throughout =
+      card.lines.size() == 2 && card.is_large[0] && card.is_large[1] && card.expanded.empty();
   if (is_large_throughout) return patch_large_fields(patcher, move);
   rewrite_in_large_fields(patcher, source, move);
 }
@@ -246,8 +246,8 @@ void write_new_nastran(const Mesh& mesh, const WriteOptions&, OutputFile& output
   output.write("$ written by roughmesh\nBEGIN BULK\n");
   for (const PhysicalGroup& group : mesh.groups)
     if (!group.name.empty() && group.dimension > 0)
-      output.write(fmt::format("$ Femap Property {} : {}\n", properties(group),
-                               printable_line(group.name)));
+      output.write(
+          fmt::format("$ Femap Property {} : {}\n", properties(group), printable_line(group.name)));
   for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
     const Vec3& x = mesh.nodes[i];
     output.write(fmt::format("GRID*   {:<16}{:<16}{:<16}{:<16}*\n*       {}\n", numbers.nodes[i], 0,

@@ -56,8 +56,7 @@ class TriplePatcher {
 /// Copies a text source while replacing spans of it, front to back.
 class TextPatcher {
  public:
-  TextPatcher(const MeshSource& source, OutputFile& output)
-      : source_(&source), output_(&output) {}
+  TextPatcher(const MeshSource& source, OutputFile& output) : source_(&source), output_(&output) {}
 
   /// @param span  a part of the source
   void replace(std::string_view span, std::string_view text);

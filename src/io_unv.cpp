@@ -157,9 +157,10 @@ void Reader::read_element(const std::vector<Tag>& head, bool has_bins) {
   const UnvType type = unv_type(descriptor);
   if (tag < 0) fail(fmt::format("element {}: a number cannot be negative", tag));
   if (!type.is_known)
-    scanner_.refuse(fmt::format("element {} has the finite element descriptor {}, which is not "
-                                "handled; use others or leave them out of the file",
-                                tag, descriptor));
+    scanner_.refuse(
+        fmt::format("element {} has the finite element descriptor {}, which is not "
+                    "handled; use others or leave them out of the file",
+                    tag, descriptor));
   if (n_nodes < 1 || (!type.is_ignored && n_nodes != type.type.n_nodes))
     fail(fmt::format("element {} has {} nodes where descriptor {} has {}", tag, n_nodes, descriptor,
                      type.is_ignored ? 1 : type.type.n_nodes));

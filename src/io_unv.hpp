@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Parts of the UNV reader and writer. Format: I-deas universal files, "Universal Dataset Number" 781,
-// 780, 2411, 2412, 2477 (https://www.ceas3.uc.edu/sdrluff/).
+// Parts of the UNV reader and writer. Format: I-deas universal files, "Universal Dataset Number"
+// 781, 780, 2411, 2412, 2477 (https://www.ceas3.uc.edu/sdrluff/).
 #pragma once
 
 #include <optional>
 #include <string_view>
 
 #include "file_formats.hpp"
-#include "node_order.hpp"
+#include "serendipity.hpp"
 
 namespace roughmesh::detail {
 
@@ -21,7 +21,7 @@ struct UnvType {
 UnvType unv_type(Tag descriptor);
 /// The descriptor of new elements; 0 where the format has none.
 int unv_descriptor(const ElementType& type, bool is_plane);
-const NodeOrder& unv_node_order();
+const SerendipityOrder& unv_node_order();
 
 void check_unv(const Mesh& mesh, const std::filesystem::path& path);
 void write_new_unv(const Mesh& mesh, const WriteOptions& options, OutputFile& output);

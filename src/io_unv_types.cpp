@@ -65,8 +65,8 @@ int unv_descriptor(const ElementType& type, bool is_plane) {
   return 0;
 }
 
-const NodeOrder& unv_node_order() {
-  static const NodeOrder order(second_order);
+const SerendipityOrder& unv_node_order() {
+  static const SerendipityOrder order(second_order);
   return order;
 }
 

@@ -49,7 +49,7 @@ void write_elements(const Mesh& mesh, const NewNumbers& numbers, OutputFile& out
     const Tag property = block.entity > 0 && block.entity <= largest_number ? block.entity : 0;
     for (Index e = 0; e < block.size(); ++e) {
       write_numbers({numbers.elements[b][static_cast<std::size_t>(e)],
-                     unv_descriptor(block.type, plane), property, 1, 7, block.type.n_nodes},
+                     unv_descriptor(block.type, plane), property, 0, 7, block.type.n_nodes},
                     output);
       if (block.type.shape == ElementShape::line) write_numbers({0, 0, 0}, output);
       std::vector<Tag> nodes;

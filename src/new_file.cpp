@@ -8,7 +8,7 @@
 
 #include "roughmesh/error.hpp"
 
-#include "node_order.hpp"
+#include "serendipity.hpp"
 
 namespace roughmesh::detail {
 namespace {
@@ -56,15 +56,17 @@ void check_serendipity(const Mesh& mesh, const std::filesystem::path& path, bool
     if (block.size() == 0) continue;
     const bool is_missing = block.type.shape == ElementShape::pyramid && !pyramids;
     if (!is_serendipity(block.type) || is_missing)
-      throw InputError(fmt::format("{}: a {} with {} nodes cannot be written to this format; write "
-                                   ".msh",
-                                   path.string(), name(block.type), block.type.n_nodes));
+      throw InputError(
+          fmt::format("{}: a {} with {} nodes cannot be written to this format; write "
+                      ".msh",
+                      path.string(), name(block.type), block.type.n_nodes));
     has_elements |= block.type.shape != ElementShape::point;
   }
   if (!has_elements)
-    throw InputError(fmt::format("{}: a mesh of points only cannot be written to this format; "
-                                 "write .msh",
-                                 path.string()));
+    throw InputError(
+        fmt::format("{}: a mesh of points only cannot be written to this format; "
+                    "write .msh",
+                    path.string()));
 }
 
 }  // namespace roughmesh::detail

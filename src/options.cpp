@@ -152,9 +152,10 @@ void check_lengths(const Roughness& o) {
   const DistanceKind distance = o.distance.value_or(DistanceKind::euclidean);
   if (o.length.size() > 1 &&
       (distance == DistanceKind::great_circle || distance == DistanceKind::curve))
-    throw InputError(fmt::format("--length: {} numbers; anisotropic lengths do not go with "
-                                 "--distance {}",
-                                 o.length.size(), name(distance)));
+    throw InputError(
+        fmt::format("--length: {} numbers; anisotropic lengths do not go with "
+                    "--distance {}",
+                    o.length.size(), name(distance)));
 }
 
 void check_period(const Roughness& o) {
@@ -204,14 +205,15 @@ void check_surfaces(const std::vector<Roughness>& surfaces) {
       throw InputError(fmt::format("surface {}: {}", i + 1, error.what()));
     }
     if (surfaces.size() > 1 && surfaces[i].group.empty())
-      throw InputError(fmt::format("surface {}: no group; name one where there are several surfaces",
-                                   i + 1));
+      throw InputError(
+          fmt::format("surface {}: no group; name one where there are several surfaces", i + 1));
   }
   check_seeds(surfaces);
 }
 
 void check_files(const RoughenOptions& o) {
-  if (o.ascii && o.binary) throw InputError("--ascii: not together with --binary; give one of them");
+  if (o.ascii && o.binary)
+    throw InputError("--ascii: not together with --binary; give one of them");
   if (o.mesh_size)
     require(std::isfinite(*o.mesh_size) && *o.mesh_size > 0, "--mesh-size", *o.mesh_size,
             "a positive number");
@@ -305,8 +307,8 @@ Fade parse_fade(const std::string& text) {
   const auto [stop, error] = std::from_chars(number.data(), end, fade.width);
   if (error != std::errc() || stop != end || !(fade.width > 0) || !std::isfinite(fade.width) ||
       (colon != text.npos && fade.group.empty()))
-    throw InputError(
-        fmt::format("--fade: {}; must be a positive WIDTH or WIDTH:GROUP, such as 0.5:inlet", text));
+    throw InputError(fmt::format(
+        "--fade: {}; must be a positive WIDTH or WIDTH:GROUP, such as 0.5:inlet", text));
   return fade;
 }
 
@@ -337,7 +339,8 @@ GeometryOptions geometry_options(const RoughenOptions& o) {
   // A script knows its own sizes.
   const bool is_script = std::filesystem::path(o.input).extension() == ".geo";
   if (!o.mesh_size && !is_script && !has_length)
-    throw InputError("--mesh-size: missing; CAD files need it, or --length, of which it is 1 / 2.5");
+    throw InputError(
+        "--mesh-size: missing; CAD files need it, or --length, of which it is 1 / 2.5");
   GeometryOptions options;
   options.gmsh = o.gmsh;
   options.timeout = o.timeout;

@@ -81,8 +81,7 @@ void from_json_value(const json& value, std::optional<double>& target) {
 void from_json_value(const json& value, std::vector<std::string>& target) {
   target.clear();
   const auto add = [&](const json& item) {
-    if (!item.is_string() && !item.is_number())
-      throw WrongType{"a list of names or numbers"};
+    if (!item.is_string() && !item.is_number()) throw WrongType{"a list of names or numbers"};
     target.push_back(item.is_string() ? item.get<std::string>() : item.dump());
   };
   if (!value.is_array()) return add(value);
@@ -168,7 +167,8 @@ const char* const surfaces_key = "surface";
 std::vector<Roughness> surfaces_from_json(const json& list, const Roughness& above,
                                           const std::string& source) {
   if (!list.is_array() || list.empty())
-    throw InputError(fmt::format("{}: surface; must be tables, written [[surface]] in TOML", source));
+    throw InputError(
+        fmt::format("{}: surface; must be tables, written [[surface]] in TOML", source));
   std::vector<Roughness> surfaces;
   for (const json& table : list) {
     surfaces.push_back(above);

@@ -76,7 +76,8 @@ struct SqTarget {
 
 void add_once(std::vector<std::string>& works, std::vector<std::string> more) {
   for (std::string& work : more)
-    if (std::find(works.begin(), works.end(), work) == works.end()) works.push_back(std::move(work));
+    if (std::find(works.begin(), works.end(), work) == works.end())
+      works.push_back(std::move(work));
 }
 
 std::vector<std::string> cited_works(std::span<const FieldSampler> samplers,
@@ -86,9 +87,8 @@ std::vector<std::string> cited_works(std::span<const FieldSampler> samplers,
     add_once(works, samplers[f].citations());
     add_once(works, fields[f].correlation.autocorrelation().citations());
   }
-  add_once(works,
-           {"Max (1999), Weights for computing vertex normals from facet normals, "
-            "doi:10.1080/10867651.1999.10487501"});
+  add_once(works, {"Max (1999), Weights for computing vertex normals from facet normals, "
+                   "doi:10.1080/10867651.1999.10487501"});
   return works;
 }
 
@@ -136,9 +136,8 @@ std::string remedy(std::span<const FieldPlan> fields, const VolumeMover& mover) 
     return field.correlation.autocorrelation().slope_variance().has_value();
   });
   std::string text = "lower --rms";
-  text += is_smooth
-              ? " or use a longer --length"
-              : " or take a smoother --acf (slopes of this one grow as the mesh is refined)";
+  text += is_smooth ? " or use a longer --length"
+                    : " or take a smoother --acf (slopes of this one grow as the mesh is refined)";
   if (mover.n_wall_nodes() > 0)
     text += "; the rough surface ends on faces that stay, where elements invert first: --fade";
   return text + "; --allow-invalid writes it all the same";
@@ -177,8 +176,9 @@ class Run {
     prepare_fields();
     RoughMesh rough{.mesh = mesh_};
     rough.normals = at_nodes<Vec3>(
-        mesh_, rough_.surfaces,
-        [&](std::size_t s) -> const auto& { return rough_.surfaces[s].normals; }, Vec3::Zero());
+        mesh_,
+        rough_.surfaces, [&](std::size_t s) -> const auto& { return rough_.surfaces[s].normals; },
+        Vec3::Zero());
     for (std::uint64_t k = 0; k < options_.realizations; ++k) {
       rough.realization = options_.first + k;
       realize(mover, rough);
@@ -191,8 +191,8 @@ class Run {
   Timings& times() { return report_.timings; }
 
   void select() {
-    rough_ = timed(times().surface,
-                   [&] { return detail::prepare_surfaces(mesh_, options_.surfaces); });
+    rough_ =
+        timed(times().surface, [&] { return detail::prepare_surfaces(mesh_, options_.surfaces); });
     for (std::size_t s = 0; s < rough_.surfaces.size(); ++s) {
       const Surface& surface = rough_.surfaces[s];
       report_.request.surfaces[s] = rough_.plans[s].request;
@@ -204,8 +204,8 @@ class Run {
           timed(times().surface, [&] { return assess_resolution(surface, correlation); });
       detail::warn_of_surface(report_, surface, rough_.plans[s].request);
       detail::warn_of_scale(report_, mesh_, described, rough_.plans[s].request);
-      targets_.push_back(timed(
-          times().audit, [&] { return expect(surface, rough_.plans[s], correlation); }));
+      targets_.push_back(
+          timed(times().audit, [&] { return expect(surface, rough_.plans[s], correlation); }));
     }
   }
 
@@ -261,8 +261,8 @@ class Run {
     RealizationReport result;
     result.index = rough.realization;
     for (std::size_t s = 0; s < heights.size(); ++s)
-      result.surfaces.push_back(measure(rough_.surfaces[s], rough_.plans[s].request.rms,
-                                        targets_[s], heights[s]));
+      result.surfaces.push_back(
+          measure(rough_.surfaces[s], rough_.plans[s].request.rms, targets_[s], heights[s]));
     result.inverted_elements = rough.check.inverted_elements;
     result.min_quality = rough.check.min_quality;
     result.min_quality_before = quality_before_;

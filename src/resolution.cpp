@@ -92,8 +92,7 @@ FaceSums face_sums(const Surface& surface, const Correlation& correlation) {
     FaceSums& part = parts[begin / grain];
     for (std::size_t f = begin; f < end; ++f) {
       const auto face = surface.face(static_cast<Index>(f));
-      if (surface.dimension == 1)
-        part += line_sums(face[0], face[1], surface, correlation);
+      if (surface.dimension == 1) part += line_sums(face[0], face[1], surface, correlation);
       for (std::size_t k = 2; k < face.size(); ++k)
         part += triangle_sums({face[0], face[k - 1], face[k]}, surface, correlation);
     }
@@ -106,8 +105,8 @@ FaceSums face_sums(const Surface& surface, const Correlation& correlation) {
 // ---- Largest height ----
 
 // Area and half the border of the surface, lengths being those of the field: the root mean square
-// difference of two heights (docs/math.md, eq. 24). A curve has no area, and its whole length counts
-// as the half border of a surface does (eq. 39).
+// difference of two heights (docs/math.md, eq. 24). A curve has no area, and its whole length
+// counts as the half border of a surface does (eq. 39).
 struct FieldSize {
   double area = 0;
   double half_border = 0;
@@ -132,8 +131,7 @@ double half_border(const Surface& surface, const Correlation& correlation) {
   return sum / 2;
 }
 
-FieldSize field_size(const Surface& surface, const FaceSums& sums,
-                     const Correlation& correlation) {
+FieldSize field_size(const Surface& surface, const FaceSums& sums, const Correlation& correlation) {
   if (surface.dimension == 1) return {0, sums.field_area};
   return {sums.field_area, half_border(surface, correlation)};
 }
@@ -276,9 +274,8 @@ Resolution assess_resolution(const Surface& surface, const Correlation& correlat
   result.rms_slope = std::sqrt(std::max(0.0, sums.slope_integral) / sums.area);
   if (const auto variance = autocorrelation.slope_variance())
     result.field_slope = std::sqrt(*variance * sums.stretch_area / sums.area);
-  result.expected_max_height =
-      expected_max_height(field_size(surface, sums, correlation),
-                          static_cast<double>(surface.n_points()));
+  result.expected_max_height = expected_max_height(field_size(surface, sums, correlation),
+                                                   static_cast<double>(surface.n_points()));
   const double curvature = largest_curvature(surface);
   result.min_curvature_radius = curvature > 0 ? 1 / curvature : infinity;
   result.largest_safe_rq = result.min_curvature_radius / result.expected_max_height;

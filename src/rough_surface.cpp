@@ -132,9 +132,8 @@ FieldPlan prepare_field(const Mesh& mesh, RoughSurfaces& rough,
   for (const std::size_t member : members)
     join_field(mesh, whole, partners.period, rough.surfaces[member], rough.plans[member]);
   const Roughness& request = rough.plans[first].request;
-  return plan_field(field_model(request, whole), is_periodic(*request.distance)
-                                                     ? partners
-                                                     : no_partners(whole.n_points()));
+  return plan_field(field_model(request, whole),
+                    is_periodic(*request.distance) ? partners : no_partners(whole.n_points()));
 }
 
 }  // namespace

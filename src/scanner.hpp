@@ -110,7 +110,6 @@ class Scanner {
 std::string printable(std::string_view text);
 std::string quoted(std::string_view text);  ///< likewise, in quotes
 
-
 /// A copy of a text in which comments, from the mark to the end of their line, are spaces: what is
 /// read from it stands at the same offsets in the file.
 FileBytes without_comments(const FileBytes& file, char mark);

@@ -76,14 +76,16 @@ void warn_of_scale(Report& report, const Mesh& mesh, const SurfaceReport& surfac
     warn(report, surface.groups, text);
   const double spacing = coordinate_spacing(mesh);
   if (rq < 1000 * spacing)
-    warn(report, surface.groups,
-         fmt::format("--rms {:g} is only {:.3g} spacings of the numbers the file can hold ({:.3g}): "
-                     "heights are rounded; use a file with more digits",
-                     rq, rq / spacing, spacing));
+    warn(
+        report, surface.groups,
+        fmt::format("--rms {:g} is only {:.3g} spacings of the numbers the file can hold ({:.3g}): "
+                    "heights are rounded; use a file with more digits",
+                    rq, rq / spacing, spacing));
   const double h = surface.mesh_size.median;
   if (rq < 1e-6 * h)
-    warn(report, surface.groups,
-         fmt::format("--rms {:g} is {:.1e} of the mesh size {:.3g}; check the unit", rq, rq / h, h));
+    warn(
+        report, surface.groups,
+        fmt::format("--rms {:g} is {:.1e} of the mesh size {:.3g}; check the unit", rq, rq / h, h));
   const double size = surface.dimension == 1 ? surface.area : std::sqrt(surface.area);
   const double length = surface.lengths.one_over_e;
   if (length < 1e-2 * h)

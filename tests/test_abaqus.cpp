@@ -43,7 +43,7 @@ const char* const two_cells =
     "*ELSET, ELSET=both, GENERATE\n"
     "1, 12\n"
     "*ELSET, ELSET=nested\n"
-    "RIGHT, 1, 30\n"
+    "RIGHT, 1, 30, springs\n"
     "*SURFACE, NAME=outside, TYPE=ELEMENT\n"
     "left part, S1\n"
     "12, s3\n"
@@ -164,11 +164,12 @@ TEST(Abaqus, ChangesInMovedCoordinatesOnly) {
 
 TEST(Abaqus, PlaneMeshesHaveSurfacesOfEdges) {
   const test::TemporaryFolder folder;
-  const Mesh mesh = read_text(folder, "a.inp",
-                              "*NODE\n1, 0, 0\n2, 1, 0\n3, 1, 1\n4, 0, 1\n5, .5, 0\n6, 1, .5\n"
-                              "7, .5, 1\n8, 0, .5\n*ELEMENT, TYPE=CPE8R\n1, 1,2,3,4,5,6,7,8\n"
-                              "*ELSET, ELSET=E\n1\n*SURFACE, NAME=right\nE, S2\n*SURFACE, NAME=all\n"
-                              "E\n");
+  const Mesh mesh =
+      read_text(folder, "a.inp",
+                "*NODE\n1, 0, 0\n2, 1, 0\n3, 1, 1\n4, 0, 1\n5, .5, 0\n6, 1, .5\n"
+                "7, .5, 1\n8, 0, .5\n*ELEMENT, TYPE=CPE8R\n1, 1,2,3,4,5,6,7,8\n"
+                "*ELSET, ELSET=E\n1\n*SURFACE, NAME=right\nE, S2\n*SURFACE, NAME=all\n"
+                "E\n");
   EXPECT_EQ(test::members(mesh).at({1, "all"}).size(), 4);
   ASSERT_EQ(test::members(mesh).at({1, "right"}).size(), 1);
   for (const ElementBlock& block : mesh.blocks)
@@ -191,12 +192,12 @@ TEST(Abaqus, SetsOfTheAssemblyBelongToItsPart) {
       "*Elset, elset=Set-1, instance=Plate-1, generate\n1, 1, 1\n"
       "*Elset, elset=elsewhere, instance=Wall-1\n1,\n"
       "*Surface, type=ELEMENT, name=Top\n_Top_S2, S2\n"
-      "*Surface, type=ELEMENT, name=Low\nPlate-1.Set-1, S1\n"
+      "*Surface, type=ELEMENT, name=Low\nPlate-1.Set-1, S1\nelsewhere, S1\nm, S1\n"
       "*Surface, type=NODE, name=Nodes\nfixed, 1.\n*End Assembly\n";
   const Mesh mesh = read_text(folder, "a.inp", bytes);
   EXPECT_EQ(mesh.n_nodes(), 4);
-  EXPECT_EQ(test::members(mesh), (Members{{{2, "Top"}, {2}},
-                                          {{2, "Low"}, {3}},
+  EXPECT_EQ(test::members(mesh), (Members{{{2, "Low"}, {2}},
+                                          {{2, "Top"}, {3}},
                                           {{3, "Set-1"}, {1}},
                                           {{3, "assembly.Set-1"}, {1}}}));
 }
@@ -220,8 +221,8 @@ TEST(Abaqus, TellsWhatItDoesNotHold) {
   EXPECT_EQ(conversion_losses(mesh, folder / "a.inp"),
             std::vector<std::string>{"1 point elements"});
   mesh.blocks = {test::make_block({ElementShape::triangle, 2, 6}, 0, {}, {0, 1, 2, 3, 0, 1}, 1)};
-  mesh.blocks.push_back(test::make_block({ElementShape::quadrangle, 2, 9}, 0, {},
-                                         {0, 1, 2, 3, 0, 1, 2, 3, 0}, 2));
+  mesh.blocks.push_back(
+      test::make_block({ElementShape::quadrangle, 2, 9}, 0, {}, {0, 1, 2, 3, 0, 1, 2, 3, 0}, 2));
   EXPECT_THROW(write_mesh(mesh, folder / "a.inp"), InputError);
 }
 
@@ -250,14 +251,18 @@ TEST(Abaqus, IsReadByMeshio) {
   EXPECT_NE(seen.find("'surface'"), std::string::npos) << seen;
 }
 
-TEST(Abaqus, SurvivesCuts) { test::expect_survives_cuts("a.inp", two_cells); }
+TEST(Abaqus, SurvivesCutsAndDamage) {
+  test::expect_survives_cuts("a.inp", two_cells);
+  test::expect_survives_damage("a.inp", two_cells);
+}
 
 // Sets that repeat others could list 2^50 elements.
 TEST(Abaqus, TakesLinearTimeForSetsOfSets) {
   const test::TemporaryFolder folder;
   std::string bytes = two_cells;
   bytes += "\n*ELSET, ELSET=s0\n1\n";
-  for (int i = 1; i < 50; ++i) bytes += fmt::format("*ELSET, ELSET=s{}\ns{}, s{}\n", i, i - 1, i - 1);
+  for (int i = 1; i < 50; ++i)
+    bytes += fmt::format("*ELSET, ELSET=s{}\ns{}, s{}\n", i, i - 1, i - 1);
   test::write_bytes(folder / "a.inp", bytes);
   test::expect_refused(folder / "a.inp", Kind::format_error, "far more elements");
 }
@@ -306,9 +311,10 @@ std::vector<test::Refusal> refusals() {
   cases.push_back({"empty_of_nodes", "*HEADING\n", "no nodes"});
   cases.push_back({"empty_of_elements", "*NODE\n1, 0, 0, 0\n", "no elements"});
   cases.push_back({"other_inp", "# AVS UCD\n1 2 3\n", "does not begin with a keyword"});
-  cases.push_back({"two_parts",
-                   "*PART, NAME=A\n*NODE\n1, 0, 0, 0\n*END PART\n*PART, NAME=B\n*NODE\n1, 0, 0, 0\n",
-                   "both have nodes", Kind::input_error});
+  cases.push_back(
+      {"two_parts",
+       "*PART, NAME=A\n*NODE\n1, 0, 0, 0\n*END PART\n*PART, NAME=B\n*NODE\n1, 0, 0, 0\n",
+       "both have nodes", Kind::input_error});
   return cases;
 }
 

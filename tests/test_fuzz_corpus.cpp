@@ -23,8 +23,8 @@ TEST(FuzzCorpus, EveryMeshFileIsReadOrRefused) {
     SCOPED_TRACE(entry.path());
     const std::string bytes = test::read_bytes(entry.path());
     EXPECT_LT(bytes.size(), 4096U) << "a corpus file should be small";
-    EXPECT_NO_THROW(fuzz::run(
-        [&] { fuzz::read_and_write(bytes, detail::lower_extension(entry.path())); }));
+    EXPECT_NO_THROW(
+        fuzz::run([&] { fuzz::read_and_write(bytes, detail::lower_extension(entry.path())); }));
     ++n_files;
   }
   EXPECT_GT(n_files, 0);

@@ -130,16 +130,22 @@ TEST(Nastran, RewritesMovedEntriesWithAllTheirDigits) {
   }
 }
 
+TEST(Nastran, MshOfAnyNameStaysMsh) {
+  const test::TemporaryFolder folder;
+  write_mesh(test::plate(1), folder / "a.msh");
+  EXPECT_EQ(read_text(folder, "a.bdf", test::read_bytes(folder / "a.msh")).format,
+            MeshFormat::msh4);
+}
+
 TEST(Nastran, MarksAndCommentsOfSmallEntriesStay) {
   const test::TemporaryFolder folder;
-  const std::string rest =
-      "GRID,2,,1.,0.,0.\nGRID,3,,0.,1.,0.\nCTRIA3,1,1,1,2,3\n";
+  const std::string rest = "GRID,2,,1.,0.,0.\nGRID,3,,0.,1.,0.\nCTRIA3,1,1,1,2,3\n";
   Mesh mesh = read_text(folder, "a.bdf", "GRID    1               0.      0.  $ origin\n" + rest);
   mesh.nodes[0][0] = 0.5;
   write_mesh(mesh, folder / "b.bdf");
-  EXPECT_EQ(test::read_bytes(folder / "b.bdf"),
-            "GRID*   " + large("1", "", ".5", "0.") + "*\n*       " + std::string(64, ' ') +
-                "$ origin\n" + rest);
+  EXPECT_EQ(test::read_bytes(folder / "b.bdf"), "GRID*   " + large("1", "", ".5", "0.") +
+                                                    "*\n*       " + std::string(64, ' ') +
+                                                    "$ origin\n" + rest);
 }
 
 // Of numbers of all sizes: what 16 characters hold is a number within half a unit of its last
@@ -171,12 +177,12 @@ TEST(Nastran, SixteenCharactersHoldAsManyDigitsAsFit) {
 TEST(Nastran, CoordinateSpacingIsThatOfItsFields) {
   const test::TemporaryFolder folder;
   const std::string rest = "GRID,2,,1.,0.,0.\nGRID,3,,0.,1.,0.\nCTRIA3,1,1,1,2,3\n";
-  EXPECT_DOUBLE_EQ(coordinate_spacing(read_text(
-                       folder, "a.bdf", "GRID    1               5.0\n" + rest)),
-                   1e-14);
-  EXPECT_DOUBLE_EQ(coordinate_spacing(read_text(
-                       folder, "a.bdf", "GRID    1               -5.0\n" + rest)),
-                   1e-13);
+  EXPECT_DOUBLE_EQ(
+      coordinate_spacing(read_text(folder, "a.bdf", "GRID    1               5.0\n" + rest)),
+      1e-14);
+  EXPECT_DOUBLE_EQ(
+      coordinate_spacing(read_text(folder, "a.bdf", "GRID    1               -5.0\n" + rest)),
+      1e-13);
   EXPECT_EQ(coordinate_spacing(read_text(folder, "a.bdf", "GRID,1,,5.\n" + rest)),
             std::ldexp(4.0, -52));
 }
@@ -190,8 +196,8 @@ TEST(Nastran, NumbersOfFortranAreRead) {
   EXPECT_EQ(fortran_real(".5"), 0.5);
   EXPECT_EQ(fortran_real("5."), 5.0);
   EXPECT_EQ(fortran_real("1.-400"), 0.0);
-  for (const char* const text : {"", "-", ".", "1.5-", "1.5e", "nan", "inf", "-inf", "1.+400", "1 2",
-                                 "0x1p3", "1-2-3", "--1", "1.5ee3", "e5"})
+  for (const char* const text : {"", "-", ".", "1.5-", "1.5e", "nan", "inf", "-inf", "1.+400",
+                                 "1 2", "0x1p3", "1-2-3", "--1", "1.5ee3", "e5"})
     EXPECT_FALSE(fortran_real(text)) << text;
 }
 
@@ -250,7 +256,10 @@ TEST(Nastran, OfGmshHasItsNodesOnTheMiddlesOfEdges) {
   }
 }
 
-TEST(Nastran, SurvivesCuts) { test::expect_survives_cuts("a.bdf", pyramid); }
+TEST(Nastran, SurvivesCutsAndDamage) {
+  test::expect_survives_cuts("a.bdf", pyramid);
+  test::expect_survives_damage("a.bdf", pyramid);
+}
 
 class NastranRefusal : public testing::TestWithParam<test::Refusal> {};
 

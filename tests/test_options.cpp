@@ -108,10 +108,20 @@ TEST(Options, NonsenseIsRefusedByTheNameOfTheOption) {
           {"--length", [](auto& o, double x) { o.surfaces[0].length = {x}; }},
           {"--tolerance", [](auto& o, double x) { o.tolerance = x; }},
           {"--edge-angle", [](auto& o, double x) { o.surfaces[0].edge_angle = x; }},
-          {"--nu", [](auto& o, double x) { o.surfaces[0].acf = Family::matern, o.surfaces[0].nu = x; }},
-          {"--hurst", [](auto& o, double x) { o.surfaces[0].acf = Family::self_affine, o.surfaces[0].hurst = x; }},
-          {"--power", [](auto& o, double x) { o.surfaces[0].acf = Family::stretched, o.surfaces[0].power = x; }},
-          {"--alpha", [](auto& o, double x) { o.surfaces[0].acf = Family::rational_quadratic, o.surfaces[0].alpha = x; }},
+          {"--nu",
+           [](auto& o, double x) { o.surfaces[0].acf = Family::matern, o.surfaces[0].nu = x; }},
+          {"--hurst",
+           [](auto& o, double x) {
+             o.surfaces[0].acf = Family::self_affine, o.surfaces[0].hurst = x;
+           }},
+          {"--power",
+           [](auto& o, double x) {
+             o.surfaces[0].acf = Family::stretched, o.surfaces[0].power = x;
+           }},
+          {"--alpha",
+           [](auto& o, double x) {
+             o.surfaces[0].acf = Family::rational_quadratic, o.surfaces[0].alpha = x;
+           }},
       };
   for (const auto& [option, set] : numbers)
     for (const double value : {0.0, -1.0, nan, inf, -inf}) {
@@ -131,7 +141,9 @@ TEST(Options, CombinationsThatMakeNoSenseAreRefused) {
   EXPECT_TRUE(refused([](auto& o) { o.surfaces[0].length = {}; }));
   EXPECT_TRUE(refused([](auto& o) { o.surfaces[0].length = {1, 2, 3, 4}; }));
   EXPECT_TRUE(refused([](auto& o) { o.surfaces[0].angle = 10; }));
-  EXPECT_TRUE(refused([](auto& o) { o.surfaces[0].length = {1, 2}, o.surfaces[0].distance = DistanceKind::great_circle; }));
+  EXPECT_TRUE(refused([](auto& o) {
+    o.surfaces[0].length = {1, 2}, o.surfaces[0].distance = DistanceKind::great_circle;
+  }));
   EXPECT_TRUE(refused([](auto& o) { o.surfaces[0].nu = 1; }));
   EXPECT_TRUE(refused([](auto& o) { o.surfaces[0].rolloff = 1; }));
   EXPECT_TRUE(refused([](auto& o) { o.method = "lattice"; }));

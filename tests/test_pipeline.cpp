@@ -66,7 +66,8 @@ TEST(Pipeline, RealizationsAreTheSameAloneAndAmongOthers) {
   const Result alone = run(sphere, options);
   EXPECT_EQ(all.meshes[3].heights, alone.meshes[0].heights);
   EXPECT_EQ(alone.meshes[0].realization, 3U);
-  EXPECT_GT(largest_difference(all.meshes[0].heights, all.meshes[1].heights), options.surfaces[0].rms);
+  EXPECT_GT(largest_difference(all.meshes[0].heights, all.meshes[1].heights),
+            options.surfaces[0].rms);
 }
 
 TEST(Pipeline, SeedsGiveOtherSurfaces) {
@@ -88,7 +89,8 @@ TEST(Pipeline, HeightsDoNotDependOnThreadsOrNumbering) {
     const Result one = run(sphere, options);
     options.threads = 2;
     const Result two = run(sphere, options);
-    EXPECT_LE(largest_difference(one.meshes[0].heights, two.meshes[0].heights), 1e-8 * options.surfaces[0].rms);
+    EXPECT_LE(largest_difference(one.meshes[0].heights, two.meshes[0].heights),
+              1e-8 * options.surfaces[0].rms);
 
     std::vector<Index> place;
     const Result shuffled = run(renumbered(sphere, place), options);
@@ -108,7 +110,8 @@ TEST(Pipeline, HeightsScaleWithTheUnit) {
   options.surfaces[0].length[0] *= 1024;
   const Result large = run(scaled, options);
   for (std::size_t i = 0; i < sphere.nodes.size(); ++i)
-    ASSERT_NEAR(large.meshes[0].heights[i], 1024 * small.meshes[0].heights[i], 1e-8 * options.surfaces[0].rms);
+    ASSERT_NEAR(large.meshes[0].heights[i], 1024 * small.meshes[0].heights[i],
+                1e-8 * options.surfaces[0].rms);
 }
 
 // A rigid motion renames the places, so heights change; what must hold does not: the covariance,
@@ -125,11 +128,15 @@ TEST(Pipeline, RigidMotionChangesNoStatistic) {
   EXPECT_NEAR(in_motion.report.surfaces[0].area, at_rest.report.surfaces[0].area, 1e-11);
   const RealizationReport& a = at_rest.report.realizations[0];
   const RealizationReport& b = in_motion.report.realizations[0];
-  EXPECT_NEAR(b.surfaces[0].sq_expected, a.surfaces[0].sq_expected, 1e-9 * a.surfaces[0].sq_expected);
-  EXPECT_NEAR(b.surfaces[0].sq_expected_std, a.surfaces[0].sq_expected_std, 1e-9 * a.surfaces[0].sq_expected);
+  EXPECT_NEAR(b.surfaces[0].sq_expected, a.surfaces[0].sq_expected,
+              1e-9 * a.surfaces[0].sq_expected);
+  EXPECT_NEAR(b.surfaces[0].sq_expected_std, a.surfaces[0].sq_expected_std,
+              1e-9 * a.surfaces[0].sq_expected);
   // Both are draws from that law: five standard deviations.
-  EXPECT_NEAR(a.surfaces[0].heights.sq, a.surfaces[0].sq_expected, 5 * a.surfaces[0].sq_expected_std);
-  EXPECT_NEAR(b.surfaces[0].heights.sq, b.surfaces[0].sq_expected, 5 * b.surfaces[0].sq_expected_std);
+  EXPECT_NEAR(a.surfaces[0].heights.sq, a.surfaces[0].sq_expected,
+              5 * a.surfaces[0].sq_expected_std);
+  EXPECT_NEAR(b.surfaces[0].heights.sq, b.surfaces[0].sq_expected,
+              5 * b.surfaces[0].sq_expected_std);
   EXPECT_LE(in_motion.report.surfaces[0].audit.covariance_error, 2e-8);
 }
 

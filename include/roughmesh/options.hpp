@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "roughmesh/autocorrelation.hpp"
+#include "roughmesh/cad.hpp"
 #include "roughmesh/distance.hpp"
 #include "roughmesh/error.hpp"
-#include "roughmesh/cad.hpp"
 #include "roughmesh/field.hpp"
 #include "roughmesh/mask.hpp"
 #include "roughmesh/mesh_io.hpp"
@@ -90,11 +90,12 @@ template <class Options, class Visit>
 void for_each_autocorrelation_option(Options& o, Visit&& visit) {
   visit(OptionText{"rms", "VALUE", "rms roughness Rq, in the length unit of the mesh; required"},
         o.rms);
-  visit(OptionText{
-            "length", "L[,LY[,LZ]]",
-            "correlation length, in the length unit of the mesh; three for an anisotropic field "
-            "(of two, the second counts for y and z; inf makes streaks)"},
-        o.length);
+  visit(
+      OptionText{
+          "length", "L[,LY[,LZ]]",
+          "correlation length, in the length unit of the mesh; three for an anisotropic field "
+          "(of two, the second counts for y and z; inf makes streaks)"},
+      o.length);
   visit(OptionText{"acf", "FAMILY", "autocorrelation function"}, o.acf);
   visit(OptionText{"length_definition", "NAME", "what --length is"}, o.length_definition);
   visit(OptionText{"nu", "N", "smoothness of matern, > 0"}, o.nu);
@@ -105,9 +106,10 @@ void for_each_autocorrelation_option(Options& o, Visit&& visit) {
         o.rolloff);
   visit(OptionText{"power", "P", "exponent of stretched, > 0 and at most 2"}, o.power);
   visit(OptionText{"alpha", "A", "exponent of rational-quadratic, > 0"}, o.alpha);
-  visit(OptionText{"table", "FILE",
-                   "two columns, distance and autocorrelation, for --acf table instead of --length"},
-        o.table);
+  visit(
+      OptionText{"table", "FILE",
+                 "two columns, distance and autocorrelation, for --acf table instead of --length"},
+      o.table);
   visit(OptionText{"angle", "DEG", "turns the axes of anisotropic lengths about z, in degrees"},
         o.angle);
   visit(OptionText{"distance", "KIND",
@@ -209,9 +211,9 @@ struct Choices<LengthDefinition> {
 };
 template <>
 struct Choices<DistanceKind> {
-  static constexpr std::array values = {
-      DistanceKind::euclidean, DistanceKind::great_circle, DistanceKind::periodic,
-      DistanceKind::minimum_image, DistanceKind::curve};
+  static constexpr std::array values = {DistanceKind::euclidean, DistanceKind::great_circle,
+                                        DistanceKind::periodic, DistanceKind::minimum_image,
+                                        DistanceKind::curve};
 };
 template <>
 struct Choices<VolumeChoice> {
@@ -219,11 +221,11 @@ struct Choices<VolumeChoice> {
 };
 template <>
 struct Choices<MeshFormat> {
-  static constexpr std::array values = {
-      MeshFormat::msh2,   MeshFormat::msh4,    MeshFormat::stl, MeshFormat::ply,
-      MeshFormat::ply2,   MeshFormat::obj,     MeshFormat::off, MeshFormat::abaqus,
-      MeshFormat::nastran, MeshFormat::unv,    MeshFormat::medit, MeshFormat::su2,
-      MeshFormat::vtk,    MeshFormat::vtu};
+  static constexpr std::array values = {MeshFormat::msh2, MeshFormat::msh4,   MeshFormat::stl,
+                                        MeshFormat::ply,  MeshFormat::ply2,   MeshFormat::obj,
+                                        MeshFormat::off,  MeshFormat::abaqus, MeshFormat::nastran,
+                                        MeshFormat::unv,  MeshFormat::medit,  MeshFormat::su2,
+                                        MeshFormat::vtk,  MeshFormat::vtu};
 };
 
 /// Checks every option that can be checked without the mesh.

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <map>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -71,12 +72,21 @@ inline const std::vector<std::pair<int, int>>& second_order_edges(ElementShape s
       {ElementShape::quadrangle, {{0, 1}, {1, 2}, {2, 3}, {3, 0}}},
       {ElementShape::tetrahedron, {{0, 1}, {1, 2}, {2, 0}, {3, 0}, {2, 3}, {1, 3}}},
       {ElementShape::hexahedron,
-       {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 5}, {2, 3}, {2, 6}, {3, 7}, {4, 5}, {4, 7}, {5, 6},
+       {{0, 1},
+        {0, 3},
+        {0, 4},
+        {1, 2},
+        {1, 5},
+        {2, 3},
+        {2, 6},
+        {3, 7},
+        {4, 5},
+        {4, 7},
+        {5, 6},
         {6, 7}}},
       {ElementShape::prism,
        {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 4}, {2, 5}, {3, 4}, {3, 5}, {4, 5}}},
-      {ElementShape::pyramid,
-       {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 4}, {2, 3}, {2, 4}, {3, 4}}}};
+      {ElementShape::pyramid, {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 4}, {2, 3}, {2, 4}, {3, 4}}}};
   return edges.at(shape);
 }
 
@@ -98,7 +108,8 @@ inline Index expect_middles(const Mesh& mesh, double tolerance) {
   return n;
 }
 
-/// One element of order 2 of each shape but points, each on nodes of its own, in a group of its own.
+/// One element of order 2 of each shape but points, each on nodes of its own, in a group of its
+/// own.
 inline Mesh second_order_zoo(bool with_pyramid) {
   const std::vector<std::pair<ElementShape, int>> shapes = {
       {ElementShape::line, 2},        {ElementShape::triangle, 3},   {ElementShape::quadrangle, 4},
@@ -117,8 +128,8 @@ inline Mesh second_order_zoo(bool with_pyramid) {
     for (const auto& [a, b] : second_order_edges(shape))
       add((mesh.nodes[nodes[a]] + mesh.nodes[nodes[b]]) / 2);
     const auto tag = static_cast<Tag>(mesh.blocks.size()) + 1;
-    mesh.blocks.push_back(make_block({shape, 2, static_cast<int>(nodes.size())}, 0, {tag}, nodes,
-                                     10 * tag));
+    mesh.blocks.push_back(
+        make_block({shape, 2, static_cast<int>(nodes.size())}, 0, {tag}, nodes, 10 * tag));
     mesh.groups.push_back({dimension(shape), tag, "group " + std::to_string(tag)});
   }
   number_nodes(mesh);
@@ -130,8 +141,8 @@ inline std::filesystem::path gmsh_box(const TemporaryFolder& folder, const std::
                                       bool recombine, const std::string& layers = "2") {
   write_bytes(folder / "box.geo",
               "SetFactory(\"OpenCASCADE\");\nRectangle(1) = {0, 0, 0, 1, 2};\n"
-              "a[] = Extrude {0, 0, 1} { Surface{1}; Layers{" + layers + "}; " +
-                  (recombine ? "Recombine; " : "") +
+              "a[] = Extrude {0, 0, 1} { Surface{1}; Layers{" +
+                  layers + "}; " + (recombine ? "Recombine; " : "") +
                   "};\nPhysical Volume(\"inside\", 7) = {a[1]};\n"
                   "Physical Surface(\"top\", 3) = {a[0]};\nPhysical Surface(\"base\", 4) = {1};\n"
                   "MeshSize {:} = 1;\n");
@@ -182,22 +193,41 @@ inline void expect_refused(const std::filesystem::path& path, Kind kind, const s
   EXPECT_LT(message.size(), path.string().size() + 250) << message;
 }
 
-/// A file cut anywhere is refused in one line, or is a mesh that comes out as it went in.
+/// Refused in one line, or a mesh that comes out as it went in and whose nodes can all be moved.
+inline void expect_read_or_refused(const TemporaryFolder& folder, const std::string& name,
+                                   const std::string& bytes) {
+  const std::filesystem::path out = folder / ("out_" + name);
+  try {
+    Mesh mesh = read_text(folder, name, bytes);
+    write_mesh(mesh, out);
+    EXPECT_EQ(read_bytes(out), bytes);
+    for (Vec3& x : mesh.nodes) x += Vec3(0.25, -0.5, 0.125);
+    write_mesh(mesh, out);
+    const Mesh again = read_mesh(out);
+    expect_same_elements(again, mesh);
+    for (std::size_t i = 0; i < mesh.nodes.size(); ++i)  // 16 characters hold 11 digits or more
+      EXPECT_LE((again.nodes[i] - mesh.nodes[i]).norm(), 1e-11 * mesh.nodes[i].norm()) << bytes;
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()).find_first_of("\n\r"), std::string::npos);
+  }
+}
+
 inline void expect_survives_cuts(const std::string& name, const std::string& bytes) {
   const TemporaryFolder folder;
-  const std::string whole = bytes;
-  for (std::size_t size = 1; size < whole.size(); ++size) {
-    const std::string cut = whole.substr(0, size);
-    try {
-      Mesh mesh = read_text(folder, name, cut);
-      write_mesh(mesh, folder / ("out_" + name));
-      EXPECT_EQ(read_bytes(folder / ("out_" + name)), cut);
-      for (Vec3& x : mesh.nodes) x += Vec3(0.25, -0.5, 0.125);
-      write_mesh(mesh, folder / ("out_" + name));
-      EXPECT_EQ(read_mesh(folder / ("out_" + name)).n_nodes(), mesh.n_nodes()) << cut;
-    } catch (const Error& error) {
-      EXPECT_EQ(std::string(error.what()).find_first_of("\n\r"), std::string::npos);
-    }
+  for (std::size_t size = 1; size < bytes.size(); ++size)
+    expect_read_or_refused(folder, name, bytes.substr(0, size));
+}
+
+inline void expect_survives_damage(const std::string& name, const std::string& bytes) {
+  const TemporaryFolder folder;
+  const std::string signs = "0123456789 -+.,*$\t\n\rEDeS=";
+  std::mt19937 random(5);
+  for (int k = 0; k < 2000; ++k) {
+    std::string damaged = bytes;
+    for (int damage = 0; damage < 1 + k % 4; ++damage)
+      damaged[random() % damaged.size()] =
+          k % 8 == 0 ? static_cast<char>(random()) : signs[random() % signs.size()];
+    expect_read_or_refused(folder, name, damaged);
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "node_order.hpp"
+#include "serendipity.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -62,7 +62,7 @@ int middle_node(ElementShape shape, int a, int b) {
   return position(split(gmsh_places[index(shape)]), std::to_string(low) + std::to_string(high));
 }
 
-NodeOrder::NodeOrder(std::span<const SecondOrderNodes> nodes) {
+SerendipityOrder::SerendipityOrder(std::span<const SecondOrderNodes> nodes) {
   for (const SecondOrderNodes& of_shape : nodes) {
     const std::vector<std::string> file = split(of_shape.places);
     const std::vector<std::string> gmsh = split(gmsh_places[index(of_shape.shape)]);
@@ -73,13 +73,13 @@ NodeOrder::NodeOrder(std::span<const SecondOrderNodes> nodes) {
   }
 }
 
-std::span<const int> NodeOrder::in_file(const ElementType& type) const {
+std::span<const int> SerendipityOrder::in_file(const ElementType& type) const {
   const std::vector<int>& order = in_file_[index(type.shape)];
   if (type.order == 2 && !order.empty()) return order;
   return first_nodes(type.n_nodes);
 }
 
-std::span<const int> NodeOrder::in_gmsh(const ElementType& type) const {
+std::span<const int> SerendipityOrder::in_gmsh(const ElementType& type) const {
   const std::vector<int>& order = in_gmsh_[index(type.shape)];
   if (type.order == 2 && !order.empty()) return order;
   return first_nodes(type.n_nodes);

@@ -27,9 +27,9 @@ int middle_node(ElementShape shape, int a, int b);
 
 /// From one format's order to Gmsh's and back. Shapes that are not listed, and all of order 1, have
 /// the same order in both.
-class NodeOrder {
+class SerendipityOrder {
  public:
-  explicit NodeOrder(std::span<const SecondOrderNodes> nodes);
+  explicit SerendipityOrder(std::span<const SecondOrderNodes> nodes);
 
   /// Where the file lists Gmsh's node k.
   std::span<const int> in_file(const ElementType& type) const;
