@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -97,6 +98,30 @@ std::vector<VectorSum> shared_sums(const std::vector<VectorSum>& own,
   return sums;
 }
 
+std::vector<Index> everyone_alone(const Surface& surface) {
+  std::vector<Index> sharer(surface.points.size());
+  std::iota(sharer.begin(), sharer.end(), Index{0});
+  return sharer;
+}
+
+// Directions of the weighted sums, of the plain sums where those have none; refuse(point) throws
+// where neither has.
+template <class Refuse>
+void set_normals(Surface& surface, std::span<const Index> sharer, Refuse&& refuse) {
+  const std::vector<VectorSum> sums =
+      shared_sums(surface.dimension == 1 ? curve_sums(surface) : max_sums(surface), sharer);
+  std::vector<VectorSum> fallback;
+  for (Index point = 0; point < surface.n_points(); ++point) {
+    const VectorSum* sum = &sums[point];
+    if (!sum->has_direction()) {
+      if (fallback.empty()) fallback = shared_sums(area_sums(surface), sharer);
+      sum = &fallback[point];
+    }
+    if (!sum->has_direction()) refuse(point);
+    surface.normals[point] = sum->sum / sum->sum.norm();
+  }
+}
+
 double longest_edge(const Corners& corners) {
   double longest = 0;
   for (std::size_t k = 0; k < corners.n; ++k)
@@ -158,39 +183,17 @@ void measure_areas(Surface& surface) {
 }
 
 void measure_normals(const Mesh& mesh, Surface& surface) {
-  const std::vector<VectorSum> sums =
-      surface.dimension == 1 ? curve_sums(surface) : max_sums(surface);
-  std::vector<VectorSum> fallback;
   surface.normals.resize(surface.points.size());
-  for (Index point = 0; point < surface.n_points(); ++point) {
-    const VectorSum* sum = &sums[point];
-    if (!sum->has_direction()) {
-      if (fallback.empty()) fallback = area_sums(surface);
-      sum = &fallback[point];
-    }
-    if (!sum->has_direction()) refuse_point(mesh, surface, point);
-    surface.normals[point] = sum->sum / sum->sum.norm();
-  }
+  set_normals(surface, everyone_alone(surface), [&](Index point) { refuse_point(mesh, surface, point); });
 }
 
 void measure_shared_normals(Surface& surface, std::span<const Index> sharer) {
-  if (surface.dimension != 2)
-    throw InputError("periodic partners of lines have no common normals; choose faces");
-  const std::vector<VectorSum> sums = shared_sums(max_sums(surface), sharer);
-  std::vector<VectorSum> fallback;
-  for (Index point = 0; point < surface.n_points(); ++point) {
-    const VectorSum* sum = &sums[point];
-    if (!sum->has_direction()) {
-      if (fallback.empty()) fallback = shared_sums(area_sums(surface), sharer);
-      sum = &fallback[point];
-    }
-    if (!sum->has_direction())
-      throw InputError(
-          fmt::format("the faces at {} and at its periodic images cancel each other: no normal is "
-                      "common to them; choose the faces of one side",
-                      place(surface.points[point])));
-    surface.normals[point] = sum->sum / sum->sum.norm();
-  }
+  set_normals(surface, sharer, [&](Index point) {
+    throw InputError(
+        fmt::format("the faces at {} and at its periodic images cancel each other: no normal is "
+                    "common to them; choose the faces of one side",
+                    place(surface.points[point])));
+  });
 }
 
 void measure_edges(const EdgeTable& edges, double sharp_angle, Surface& surface) {

@@ -158,6 +158,76 @@ TEST(Options, CombinationsThatMakeNoSenseAreRefused) {
   EXPECT_FALSE(refused([](auto& o) { o.realizations = 2, o.output = "r_{realization}.msh"; }));
 }
 
+TEST(Options, TablesOfAJobAreSurfacesThatTakeTheRestFromTheTop) {
+  const RoughenOptions job = read_job_text(
+      "rms = 2\nlength = 10\nfade = 0.5\n[[surface]]\ngroup = 'a'\nseed = 1\n"
+      "[[surface]]\ngroup = 'b'\nrms = 3\nlength = [1, inf]\n"
+      "[[surface.mask]]\nkind = 'box'\nmin = [-inf, 0, 0]\nmax = [1, 2, inf]\noutside = true\n"
+      "[[surface.mask]]\nkind = 'formula'\nexpression = 'x > 0'\n");
+  ASSERT_EQ(job.surfaces.size(), 2U);
+  EXPECT_EQ(job.surfaces[0].group, std::vector<std::string>{"a"});
+  EXPECT_EQ(job.surfaces[0].rms, 2);
+  EXPECT_EQ(job.surfaces[0].seed, 1U);
+  EXPECT_EQ(job.surfaces[1].rms, 3);
+  EXPECT_EQ(job.surfaces[1].seed, 0U);
+  EXPECT_EQ(job.surfaces[1].fade, std::vector<std::string>{"0.5"});
+  ASSERT_EQ(job.surfaces[1].mask.size(), 2U);
+  EXPECT_TRUE(std::get<BoxMask>(job.surfaces[1].mask[0]).outside);
+  EXPECT_EQ(std::get<BoxMask>(job.surfaces[1].mask[0]).max.y(), 2);
+  EXPECT_EQ(std::get<FormulaMask>(job.surfaces[1].mask[1]).expression, "x > 0");
+  EXPECT_EQ(mask_options(job.surfaces[1]).fade.front().width, 0.5);
+  const auto json = detail::options_to_json(job);
+  EXPECT_EQ(detail::options_to_json(read_job_text(json.dump())), json);
+}
+
+TEST(Options, BadTablesAndMasksAreRefusedByName) {
+  const std::vector<std::pair<std::string, std::string>> jobs = {
+      {"surface = 3", "[[surface]]"},
+      {"surface = []", "[[surface]]"},
+      {"[[surface]]\ninput = 'a.msh'", "input"},
+      {"[[surface]]\nrms = 'x'", "surface 1"},
+      {"mask = 'box'", "[[mask]]"},
+      {"[[mask]]\nkind = 'cone'", "box, sphere or formula"},
+      {"[[mask]]\nmin = [0, 0, 0]", "kind"},
+      {"[[mask]]\nkind = 'box'\nmin = [0, 0]\nmax = [1, 1, 1]", "min"},
+      {"[[mask]]\nkind = 'sphere'\ncentre = [0, 0, 0]", "radius"},
+      {"[[mask]]\nkind = 'formula'\nexpression = 'x'\nmin = 1", "min"}};
+  for (const auto& [text, part] : jobs) {
+    try {
+      read_job_text(text);
+      FAIL() << text;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST(Options, SurfacesOfAJobMustFitTogether) {
+  RoughenOptions options = good_options();
+  options.surfaces.push_back(options.surfaces[0]);
+  EXPECT_NE(refusal(options).find("surface 1: no group"), std::string::npos);
+  options.surfaces[0].group = {"a"};
+  options.surfaces[1].group = {"b"};
+  EXPECT_EQ(refusal(options), "");
+  options.surfaces[1].length = {11};
+  EXPECT_NE(refusal(options).find("same seed"), std::string::npos);
+  options.surfaces[1].seed = 1;
+  EXPECT_EQ(refusal(options), "");
+  options.surfaces[1].rms = -1;
+  EXPECT_NE(refusal(options).find("surface 2: --rms"), std::string::npos);
+}
+
+TEST(Options, FadesArePositiveWidthsWithAGroup) {
+  const auto fade_refused = [](const std::string& text) {
+    RoughenOptions options = good_options();
+    options.surfaces[0].fade = {text};
+    return refusal(options).find("--fade") != std::string::npos;
+  };
+  for (const std::string text : {"", "0", "-1", "x", "1:", "1x", "inf", "nan", ":wall"})
+    EXPECT_TRUE(fade_refused(text)) << text;
+  for (const std::string text : {"1", "0.5:wall", "2:a:b"}) EXPECT_FALSE(fade_refused(text)) << text;
+}
+
 TEST(Options, OutputNamesFollowTheTemplate) {
   EXPECT_EQ(output_path("rough_{realization}.msh", 7), "rough_7.msh");
   EXPECT_EQ(output_path("{realization:04}/r{realization}.vtu", 12), "0012/r12.vtu");

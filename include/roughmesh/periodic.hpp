@@ -56,7 +56,7 @@ std::vector<double> expand(const PeriodicPartners& partners, std::span<const dou
 /// The surface with one normal for each point and its images: from the faces of all of them
 /// together (docs/math.md, eq. 31). Rotated points keep their own.
 ///
-/// @throws InputError  partners of another surface; a surface of dimension 1; normals that cancel
+/// @throws InputError  partners of another surface; normals that cancel
 Surface with_partner_normals(const Surface& surface, const PeriodicPartners& partners);
 
 }  // namespace roughmesh

@@ -23,9 +23,6 @@ inline void add_group(Mesh& mesh, ElementType type, Tag tag, const std::string& 
   });
 }
 
-inline constexpr ElementType point_type{ElementShape::point, 1, 1};
-inline constexpr ElementType line_type{ElementShape::line, 1, 2};
-
 /// [0, 1]^2 in `divisions` squares, its four sides being the line group "rim" (7).
 inline Mesh framed_plate(int divisions) {
   Mesh mesh = plate(divisions);

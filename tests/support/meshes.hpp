@@ -23,6 +23,8 @@ inline ElementBlock make_block(ElementType type, Tag entity, std::vector<Tag> gr
   return block;
 }
 
+inline constexpr ElementType point_type{ElementShape::point, 1, 1};
+inline constexpr ElementType line_type{ElementShape::line, 1, 2};
 inline constexpr ElementType triangle_type{ElementShape::triangle, 1, 3};
 inline constexpr ElementType tetrahedron_type{ElementShape::tetrahedron, 1, 4};
 

@@ -13,8 +13,6 @@
 
 namespace roughmesh::test {
 
-inline constexpr ElementType line_type{ElementShape::line, 1, 2};
-
 /// Lines from each point to the next, and from the last to the first if closed; group "line" (1).
 inline Mesh polyline(std::vector<Vec3> points, bool closed) {
   Mesh mesh;
@@ -78,6 +76,38 @@ inline Mesh ring(int n, bool quadrangles = false) {
   mesh.blocks.push_back(make_block(type, 2, {2}, cells[1], 20'001));
   mesh.groups = {
       {1, 1, "hole"}, {1, 2, "interface"}, {1, 3, "rim"}, {2, 1, "core"}, {2, 2, "shell"}};
+  number_nodes(mesh);
+  return mesh;
+}
+
+/// Rectangle [0, length] x [-1, 1] in n_x by n_y quadrangles, face group "line" (1). Lines: "lower"
+/// (1), "upper" (2), "ends" (3: left and right). The left side is the periodic master of the right.
+/// `stretch` makes the spacing along x uneven, by up to this share of it.
+inline Mesh strip(int n_x, int n_y, double length, double stretch = 0) {
+  Mesh mesh;
+  const auto node = [&](int i, int j) { return static_cast<Index>(j * (n_x + 1) + i); };
+  for (int j = 0; j <= n_y; ++j)
+    for (int i = 0; i <= n_x; ++i) {
+      const double t = static_cast<double>(i) / n_x;
+      const double x = t + stretch / (2 * std::numbers::pi) * std::sin(2 * std::numbers::pi * t);
+      mesh.nodes.emplace_back(i == n_x ? length : length * x, -1 + 2.0 * j / n_y, 0);
+    }
+  std::vector<Index> faces, lower, upper, ends;
+  for (int i = 0; i < n_x; ++i) {
+    for (int j = 0; j < n_y; ++j)
+      faces.insert(faces.end(), {node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)});
+    lower.insert(lower.end(), {node(i, 0), node(i + 1, 0)});
+    upper.insert(upper.end(), {node(i, n_y), node(i + 1, n_y)});
+  }
+  PeriodicLink link{.dimension = 1, .entity = 4, .master_entity = 3};
+  for (int j = 0; j <= n_y; ++j) link.nodes.emplace_back(node(n_x, j), node(0, j));
+  for (int j = 0; j < n_y; ++j)
+    ends.insert(ends.end(), {node(0, j), node(0, j + 1), node(n_x, j), node(n_x, j + 1)});
+  mesh.blocks = {make_block(line_type, 1, {1}, lower, 1), make_block(line_type, 2, {2}, upper, 1001),
+                 make_block(line_type, 3, {3}, ends, 2001),
+                 make_block({ElementShape::quadrangle, 1, 4}, 1, {1}, faces, 3001)};
+  mesh.groups = {{1, 1, "lower"}, {1, 2, "upper"}, {1, 3, "ends"}, {2, 1, "line"}};
+  mesh.periodic_links = {link};
   number_nodes(mesh);
   return mesh;
 }
