@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <tuple>
 
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
@@ -90,7 +91,10 @@ struct GroupPoint {
   std::size_t surface;
   Index point;
 
-  friend auto operator<=>(const GroupPoint&, const GroupPoint&) = default;
+  friend bool operator==(const GroupPoint&, const GroupPoint&) = default;
+  friend bool operator<(const GroupPoint& a, const GroupPoint& b) {
+    return std::tie(a.group, a.surface, a.point) < std::tie(b.group, b.surface, b.point);
+  }
 };
 
 // Sorted by group, each once.

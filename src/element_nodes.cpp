@@ -2,6 +2,7 @@
 #include "element_nodes.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace roughmesh::detail {
 namespace {
@@ -55,6 +56,12 @@ std::vector<LocalFace> make_faces(const ElementType& type) {
   return faces;
 }
 
+std::vector<int> consecutive(int begin, int end) {
+  std::vector<int> numbers(static_cast<std::size_t>(end - begin));
+  std::iota(numbers.begin(), numbers.end(), begin);
+  return numbers;
+}
+
 std::vector<std::vector<int>> make_facets(const ElementType& type) {
   if (type.order == 2 && type.shape == ElementShape::line) return {{0, 2}, {2, 1}};
   if (type.order == 2 && type.shape == ElementShape::triangle)
@@ -62,9 +69,7 @@ std::vector<std::vector<int>> make_facets(const ElementType& type) {
   if (type.order == 2 && has_middle_nodes(type))
     return {{0, 4, 8, 7}, {4, 1, 5, 8}, {8, 5, 2, 6}, {7, 8, 6, 3}};
   if (type.order == 2) return {{0, 4, 7}, {4, 1, 5}, {5, 2, 6}, {6, 3, 7}, {4, 5, 6, 7}};
-  std::vector<int> corners;
-  for (int k = 0; k < n_corners(type.shape); ++k) corners.push_back(k);
-  return {corners};
+  return {consecutive(0, n_corners(type.shape))};
 }
 
 // Serendipity interpolation at the middle: all corners alike and all nodes on edges alike, exact
@@ -75,12 +80,6 @@ FollowingNode middle_of(int node, std::span<const int> corners, std::span<const 
   for (const int k : corners) middle.of_others.emplace_back(k, -0.25);
   for (const int k : on_edges) middle.of_others.emplace_back(k, is_face ? 0.5 : 0.25);
   return middle;
-}
-
-std::vector<int> consecutive(int begin, int end) {
-  std::vector<int> numbers;
-  for (int k = begin; k < end; ++k) numbers.push_back(k);
-  return numbers;
 }
 
 std::vector<FollowingNode> make_following(const ElementType& type,
