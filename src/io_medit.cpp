@@ -174,44 +174,48 @@ void check_dimension(MeditReader& reader) {
     reader.scanner.fail(fmt::format("Dimension {} is neither 2 nor 3", reader.dimension));
 }
 
+// The section as it is noted; null where the keyword is none that is looked into.
 template <typename Matches>
-void note_section(MeditReader& reader, std::size_t keyword_offset, Matches&& matches) {
-  const auto note = [&](std::string_view name) {
-    if (!reader.sections.try_emplace(name, Section{reader.scanner.offset(), 0}).second)
-      reader.scanner.fail_at(keyword_offset,
-                             fmt::format("a second section {}; a file has one", name));
-  };
+Section* note_section(MeditReader& reader, std::size_t keyword_offset, Matches&& matches) {
   for (const Keyword& keyword : refused)
     if (matches(keyword))
       reader.scanner.refuse(
           fmt::format("the section {} is not read; save the mesh without it", keyword.name));
+  std::string_view name;
   for (const Keyword& keyword : known)
-    if (matches(keyword)) note(keyword.name == "Wedges" ? "Prisms" : keyword.name);
+    if (matches(keyword)) name = keyword.name == "Wedges" ? "Prisms" : keyword.name;
   for (const MeditElements& elements : medit_elements())
-    if (matches(Keyword{elements.keyword, elements.code})) note(elements.keyword);
+    if (matches(Keyword{elements.keyword, elements.code})) name = elements.keyword;
+  if (name.empty()) return nullptr;
+  const auto [place, is_new] =
+      reader.sections.try_emplace(name, Section{reader.scanner.offset(), 0});
+  if (!is_new)
+    reader.scanner.fail_at(keyword_offset,
+                           fmt::format("a second section {}; a file has one", name));
+  return &place->second;
 }
 
 void find_text_sections(MeditReader& reader) {
   Scanner& scanner = reader.scanner;
   bool has_end = false;
-  Tag ignored = 0;
-  Tag* n_numbers = &ignored;  // of the section that is passed
+  Section* section = nullptr;  // the one that is passed
   for (scanner.skip_space(); !scanner.at_end() && !has_end; scanner.skip_space()) {
     const std::size_t start = scanner.offset();
     const std::string_view word = scanner.text_token();
     if (!is_keyword(word)) {
-      ++*n_numbers;
+      if (section != nullptr) ++section->n_numbers;
       continue;
     }
-    n_numbers = &ignored;
+    section = nullptr;
     if (equal_ignoring_case(word, "MeshVersionFormatted")) {
       reader.version = scanner.text_integer();
     } else if (equal_ignoring_case(word, "Dimension")) {
       reader.dimension = scanner.text_integer();
     } else {
       has_end = equal_ignoring_case(word, "End");
-      note_section(reader, start,
-                   [&](const Keyword& keyword) { return equal_ignoring_case(word, keyword.name); });
+      section = note_section(reader, start, [&](const Keyword& keyword) {
+        return equal_ignoring_case(word, keyword.name);
+      });
     }
   }
   if (!has_end)

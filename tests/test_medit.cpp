@@ -354,7 +354,7 @@ TEST(Medit, IsRefusedWhereverItIsCut) {
 TEST(Medit, SurvivesDamagedBytes) {
   for (const std::string& bytes : {text, with_normals})
     test::expect_survives_damage("a.mesh", bytes);
-  for (const Style& style : styles()) test::expect_survives_damage("a.meshb", binary(style), 150);
+  for (const Style& style : styles()) test::expect_survives_damage("a.meshb", binary(style), 50);
 }
 
 namespace {

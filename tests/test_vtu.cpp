@@ -105,7 +105,8 @@ TEST(Vtu, CarriesElementsOfSecondOrder) {
   const test::TemporaryFolder folder;
   std::vector<ElementType> types = test::quadratic_types();
   std::erase_if(types, [](const ElementType& type) {
-    return type == ElementType{ElementShape::prism, 2, 15};  // meshio 5.0 stumbles over it
+    // meshio 5.0 stumbles over these two
+    return type == ElementType{ElementShape::prism, 2, 15} || type.shape == ElementShape::pyramid;
   });
   const Mesh mesh = test::quadratic_elements(types);
   write_mesh(mesh, folder / "a.vtu");

@@ -101,7 +101,7 @@ inline int n_read_when_cut(const std::string& file, const std::string& bytes) {
 }
 
 inline void expect_survives_damage(const std::string& file, const std::string& bytes,
-                                   int n_trials = 300) {
+                                   int n_trials = 150) {
   const TemporaryFolder folder;
   std::mt19937 random(11);
   for (int trial = 0; trial < n_trials; ++trial) {
