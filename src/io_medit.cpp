@@ -85,13 +85,26 @@ constexpr std::array refused = {Keyword{"HexahedraQ2", 33},
                                 Keyword{"FloatingPointPrecision", 155},
                                 Keyword{"NormalAtQuadrilateralVertices", 22}};
 
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
+// A word that no number begins with; "nan" and "inf" are left to whoever reads the number.
+bool is_keyword(std::string_view token) {
+  return is_letter(token[0]) && !equal_ignoring_case(token, "nan") &&
+         !equal_ignoring_case(token, "inf") && !equal_ignoring_case(token, "infinity");
+}
+
+struct Section {
+  std::size_t offset = 0;  ///< of the count
+  Tag n_numbers = 0;       ///< up to the next keyword, with the count; text only
+};
+
 struct MeditReader {
   explicit MeditReader(const FileBytes& file) : scanner(file) {}
 
   Scanner scanner;
   Tag version = 0;
   Tag dimension = 0;
-  std::map<std::string_view, std::size_t> sections;  ///< where each begins, at its count
+  std::map<std::string_view, Section> sections;
   Mesh mesh;
   MeshSource source;
   Tag n_elements = 0;                   ///< read so far
@@ -107,6 +120,7 @@ struct MeditReader {
   }
   double real();
   std::optional<std::size_t> start(std::string_view keyword, std::size_t bytes_each);
+  void finish();                                ///< of a section that was started
   Index number(Tag n, std::string_view thing);  ///< of one of n things, from 0
 };
 
@@ -123,13 +137,23 @@ double MeditReader::real() {
 std::optional<std::size_t> MeditReader::start(std::string_view keyword, std::size_t bytes_each) {
   const auto found = sections.find(keyword);
   if (found == sections.end()) return std::nullopt;
-  scanner.move_to(found->second);
+  scanner.move_to(found->second.offset);
   scanner.set_section(std::string(keyword));
   const Tag n = integer();
   if (n > largest_index)
     scanner.refuse(fmt::format("{} {} are more than the {} that roughmesh handles; split the mesh",
                                n, keyword, largest_index));
   return scanner.count(n, bytes_each, "rows");
+}
+
+// Rows that are longer than their keyword says would be taken for other ones.
+void MeditReader::finish() {
+  if (!is_text()) return;
+  scanner.skip_space();
+  if (!scanner.at_end() && !is_keyword(Scanner(scanner).text_token()))
+    scanner.fail(
+        "numbers are left behind the last row: the count is wrong, or rows are longer than "
+        "the keyword or Dimension says");
 }
 
 Index MeditReader::number(Tag n, std::string_view thing) {
@@ -150,46 +174,48 @@ void check_dimension(MeditReader& reader) {
     reader.scanner.fail(fmt::format("Dimension {} is neither 2 nor 3", reader.dimension));
 }
 
+// The section as it is noted; null where the keyword is none that is looked into.
 template <typename Matches>
-void note_section(MeditReader& reader, std::size_t keyword_offset, Matches&& matches) {
-  const auto note = [&](std::string_view name) {
-    if (!reader.sections.try_emplace(name, reader.scanner.offset()).second)
-      reader.scanner.fail_at(keyword_offset,
-                             fmt::format("a second section {}; a file has one", name));
-  };
+Section* note_section(MeditReader& reader, std::size_t keyword_offset, Matches&& matches) {
   for (const Keyword& keyword : refused)
     if (matches(keyword))
       reader.scanner.refuse(
           fmt::format("the section {} is not read; save the mesh without it", keyword.name));
+  std::string_view name;
   for (const Keyword& keyword : known)
-    if (matches(keyword)) note(keyword.name == "Wedges" ? "Prisms" : keyword.name);
+    if (matches(keyword)) name = keyword.name == "Wedges" ? "Prisms" : keyword.name;
   for (const MeditElements& elements : medit_elements())
-    if (matches(Keyword{elements.keyword, elements.code})) note(elements.keyword);
-}
-
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
-
-// A word that no number begins with; "nan" and "inf" are left to whoever reads the number.
-bool is_keyword(std::string_view token) {
-  return is_letter(token[0]) && !equal_ignoring_case(token, "nan") &&
-         !equal_ignoring_case(token, "inf") && !equal_ignoring_case(token, "infinity");
+    if (matches(Keyword{elements.keyword, elements.code})) name = elements.keyword;
+  if (name.empty()) return nullptr;
+  const auto [place, is_new] =
+      reader.sections.try_emplace(name, Section{reader.scanner.offset(), 0});
+  if (!is_new)
+    reader.scanner.fail_at(keyword_offset,
+                           fmt::format("a second section {}; a file has one", name));
+  return &place->second;
 }
 
 void find_text_sections(MeditReader& reader) {
   Scanner& scanner = reader.scanner;
   bool has_end = false;
+  Section* section = nullptr;  // the one that is passed
   for (scanner.skip_space(); !scanner.at_end() && !has_end; scanner.skip_space()) {
     const std::size_t start = scanner.offset();
     const std::string_view word = scanner.text_token();
-    if (!is_keyword(word)) continue;
+    if (!is_keyword(word)) {
+      if (section != nullptr) ++section->n_numbers;
+      continue;
+    }
+    section = nullptr;
     if (equal_ignoring_case(word, "MeshVersionFormatted")) {
       reader.version = scanner.text_integer();
     } else if (equal_ignoring_case(word, "Dimension")) {
       reader.dimension = scanner.text_integer();
     } else {
       has_end = equal_ignoring_case(word, "End");
-      note_section(reader, start,
-                   [&](const Keyword& keyword) { return equal_ignoring_case(word, keyword.name); });
+      section = note_section(reader, start, [&](const Keyword& keyword) {
+        return equal_ignoring_case(word, keyword.name);
+      });
     }
   }
   if (!has_end)
@@ -235,6 +261,7 @@ void read_vertices(MeditReader& reader) {
     for (std::size_t k = 0; k < n_reals; ++k) x[static_cast<Eigen::Index>(k)] = reader.real();
     reader.integer();  // reference
   }
+  reader.finish();
   reader.mesh.node_tags.resize(*n);
   std::iota(reader.mesh.node_tags.begin(), reader.mesh.node_tags.end(), Tag{1});
 }
@@ -251,24 +278,41 @@ void read_element(MeditReader& reader, const MeditElements& elements, BlockFinde
     corners->insert(corners->end(), nodes.begin(), nodes.begin() + elements.type.n_nodes);
 }
 
+// gmsh 4.8 writes elements of order 2 under the keywords of order 1, which the length of the rows
+// gives away.
+const MeditElements& by_length_of_rows(MeditReader& reader, const MeditElements& elements) {
+  const Section& section = reader.sections.at(elements.keyword);
+  Scanner ahead = reader.scanner;
+  ahead.move_to(section.offset);
+  if (!reader.is_text() || section.n_numbers < 2) return elements;
+  const Tag n = ahead.text_integer();
+  for (const MeditElements& other : medit_elements())
+    if (other.type.shape == elements.type.shape && other.type.order == 2 && n > 0 &&
+        (section.n_numbers - 1) / n == other.type.n_nodes + 1 && (section.n_numbers - 1) % n == 0)
+      return other;
+  return elements;
+}
+
 // Elements are numbered over all sections, in the order of the file.
 void read_elements(MeditReader& reader) {
   std::vector<const MeditElements*> present;
   for (const MeditElements& elements : medit_elements())
     if (reader.sections.contains(elements.keyword)) present.push_back(&elements);
   std::sort(present.begin(), present.end(), [&](const MeditElements* a, const MeditElements* b) {
-    return reader.sections.at(a->keyword) < reader.sections.at(b->keyword);
+    return reader.sections.at(a->keyword).offset < reader.sections.at(b->keyword).offset;
   });
   BlockFinder finder(reader.mesh.blocks);
   for (const MeditElements* const elements : present) {
-    const auto n_numbers = static_cast<std::size_t>(elements->type.n_nodes) + 1;
+    const MeditElements& rows = by_length_of_rows(reader, *elements);
+    const auto n_numbers = static_cast<std::size_t>(rows.type.n_nodes) + 1;
     const auto n = reader.start(elements->keyword, n_numbers * reader.integer_bytes());
     std::vector<Index>* corners = nullptr;
-    if (elements->keyword == "Edges" && reader.sections.contains("TangentAtEdgeVertices"))
+    if (rows.keyword == "Edges" && reader.sections.contains("TangentAtEdgeVertices"))
       corners = &reader.edges;
-    if (elements->keyword == "Triangles" && reader.sections.contains("NormalAtTriangleVertices"))
+    if (rows.keyword == "Triangles" && reader.sections.contains("NormalAtTriangleVertices"))
       corners = &reader.triangles;
-    for (std::size_t i = 0; i < *n; ++i) read_element(reader, *elements, finder, corners);
+    for (std::size_t i = 0; i < *n; ++i) read_element(reader, rows, finder, corners);
+    reader.finish();
   }
   reader.scanner.set_section("");
   if (reader.n_elements == 0) reader.scanner.fail("no elements; save the mesh after meshing");
@@ -289,6 +333,7 @@ std::vector<NodeVector> read_vectors(MeditReader& reader, std::string_view secti
     vector.offset = reader.scanner.offset();
     for (int k = 0; k < 3; ++k) vector.value[k] = reader.real();
   }
+  if (n) reader.finish();
   return vectors;
 }
 

@@ -17,8 +17,9 @@ struct NumberedOrder {
   NodeOrder order;
 };
 
-// The first triangle of a wedge faces outward, that of Gmsh's prism inward. Pixels and voxels
-// number their corners along the axes.
+// The first triangle of a wedge of order 1 faces outward, that of Gmsh's prism inward. For wedges
+// of order 2 VTK's parametric coordinates and the programs that write them have it inward as Gmsh
+// does. Pixels and voxels number their corners along the axes.
 std::vector<VtkCell> make_table() {
   using enum ElementShape;
   const NumberedOrder orders[] = {
@@ -41,11 +42,8 @@ std::vector<VtkCell> make_table() {
       {29,
        {.type = {hexahedron, 2, 27},
         .middles = "01 12 23 30 45 56 67 74 04 15 26 37 0374 1265 0154 2376 0123 4567 01234567"}},
-      {26, {.type = {prism, 2, 15}, .corners = "021354", .middles = "01 12 20 34 45 53 03 14 25"}},
-      {32,
-       {.type = {prism, 2, 18},
-        .corners = "021354",
-        .middles = "01 12 20 34 45 53 03 14 25 0143 1254 2035"}},
+      {26, {.type = {prism, 2, 15}, .middles = "01 12 20 34 45 53 03 14 25"}},
+      {32, {.type = {prism, 2, 18}, .middles = "01 12 20 34 45 53 03 14 25 0143 1254 2035"}},
       {27, {.type = {pyramid, 2, 13}, .middles = "01 12 23 30 04 14 24 34"}}};
   std::vector<VtkCell> table;
   for (const auto& [number, order] : orders)
