@@ -34,6 +34,8 @@ void add_nodes(Mesh& mesh, Soup& soup) {
 }
 
 void add_facets(ElementBlock& block, const Soup& soup, std::size_t begin, std::size_t end) {
+  block.tags.reserve(end - begin);
+  block.nodes.reserve(3 * (end - begin));
   for (std::size_t f = begin; f < end; ++f) {
     block.tags.push_back(static_cast<Tag>(f) + 1);
     block.nodes.insert(block.nodes.end(), soup.facets[f].nodes.begin(), soup.facets[f].nodes.end());

@@ -23,7 +23,7 @@ namespace roughmesh {
 /// section
 Mesh read_mesh(const std::filesystem::path& path);
 
-/// Values at the nodes of a mesh, for formats that carry them (VTU).
+/// Values at the nodes of a mesh, for formats that carry them (VTU, PLY).
 struct PointField {
   std::string name;
   int n_components = 1;
@@ -84,8 +84,8 @@ void check_text_output(const std::filesystem::path& path);
 std::string checksum(const Mesh& mesh);
 
 /// Largest distance between neighbouring numbers of the source's number format at the coordinates
-/// of the mesh: 2^-23 of a coordinate's binade for binary STL, a unit of the last digit of a
-/// field of 16 characters for Nastran, 2^-52 of the binade otherwise. A length.
+/// of the mesh: 2^-23 of a coordinate's binade for float32 (binary STL, most PLY), a unit of the
+/// last digit of a field of 16 characters for Nastran, 2^-52 of the binade otherwise. A length.
 double coordinate_spacing(const Mesh& mesh);
 
 /// Removes what an unfinished write_mesh or write_text left beside its path; kills a gmsh that runs
