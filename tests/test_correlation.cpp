@@ -37,8 +37,8 @@ double brute_force_sum(const Autocorrelation& acf, const Vec3& x, const Vec3& pe
   std::array<int, 3> n{};
   for (int axis = 0; axis < 3; ++axis)
     if (period[axis] > 0)
-      n[axis] = static_cast<int>(
-          std::ceil((reach * lengths[axis] + std::abs(x[axis])) / period[axis]));
+      n[axis] =
+          static_cast<int>(std::ceil((reach * lengths[axis] + std::abs(x[axis])) / period[axis]));
   double sum = 0;
   for (int i = -n[0]; i <= n[0]; ++i)
     for (int j = -n[1]; j <= n[1]; ++j)
@@ -112,10 +112,11 @@ std::vector<Case> every_family() {
           {"stretched_1_7", stretched(1.7, 0.4), xyz, 9},
           {"stretched_1_98", stretched(1.98, 0.5), xyz, 7},
           {"stretched_2", stretched(2, 0.5), xyz, 7},
-          {"self_affine",
-           {.family = Family::self_affine, .hurst = 0.8, .rolloff = 3.0}, xy, 38},
+          {"self_affine", {.family = Family::self_affine, .hurst = 0.8, .rolloff = 3.0}, xy, 38},
           {"rational_quadratic_12",
-           {.family = Family::rational_quadratic, .length = 0.2, .alpha = 12}, xy, 60}};
+           {.family = Family::rational_quadratic, .length = 0.2, .alpha = 12},
+           xy,
+           60}};
 }
 
 INSTANTIATE_TEST_SUITE_P(Box, EveryFamily, testing::ValuesIn(every_family()),
@@ -126,9 +127,9 @@ TEST(PeriodicCorrelation, ExponentialOnOneAxisIsARatioOfHyperbolicCosines) {
   const double period = 2.5;
   for (const double length : {0.025, 0.3, 2.5, 40.0, 2500.0}) {
     const std::vector<Vec3> points = random_points(40, Vec3(7, 0, 0), 3);
-    const Correlation correlation(points,
-                                  Autocorrelation({.family = Family::exponential, .length = length}),
-                                  Distance::periodic(Vec3(period, 0, 0)));
+    const Correlation correlation(
+        points, Autocorrelation({.family = Family::exponential, .length = length}),
+        Distance::periodic(Vec3(period, 0, 0)));
     for (Index i = 0; i < correlation.n_points(); ++i) {
       const double x = std::abs(points[i].x() - points[0].x());
       const double u = std::fmod(x, period) - period / 2, half = period / 2;
@@ -145,12 +146,11 @@ TEST(PeriodicCorrelation, ExponentialOnOneAxisIsARatioOfHyperbolicCosines) {
 TEST(PeriodicCorrelation, RationalQuadraticHasItsWholeTail) {
   for (const double c : {0.02, 0.3, 1.0, 5.0}) {
     const std::vector<Vec3> points = random_points(40, Vec3(1, 0, 0), 4);
-    const Correlation correlation(
-        points,
-        Autocorrelation({.family = Family::rational_quadratic,
-                         .length = c / std::numbers::sqrt2,
-                         .alpha = 1.0}),
-        Distance::periodic(Vec3(1, 0, 0)));
+    const Correlation correlation(points,
+                                  Autocorrelation({.family = Family::rational_quadratic,
+                                                   .length = c / std::numbers::sqrt2,
+                                                   .alpha = 1.0}),
+                                  Distance::periodic(Vec3(1, 0, 0)));
     for (Index i = 0; i < correlation.n_points(); ++i) {
       const double x = points[i].x() - points[0].x();
       const double a = std::pow(std::sinh(pi * c), 2), b = std::pow(std::sin(pi * x), 2);
@@ -167,8 +167,8 @@ TEST(PeriodicCorrelation, RationalQuadraticHasItsWholeTailInThePlane) {
     double total = 0;
     for (int i = -15; i <= 15; ++i)
       for (int j = -15; j <= 15; ++j)
-        total += std::exp(-c * 2 * pi * std::hypot(i, j)) *
-                 std::cos(2 * pi * (i * x.x() + j * x.y()));
+        total +=
+            std::exp(-c * 2 * pi * std::hypot(i, j)) * std::cos(2 * pi * (i * x.x() + j * x.y()));
     return total;
   };
   const std::vector<Vec3> points = random_points(30, Vec3(1, 1, 0), 4);
@@ -260,11 +260,10 @@ TEST(PeriodicCorrelation, RefusesSumsThatDivergeAndTurnedAxes) {
   Anisotropy turned{.lengths = {0.1, 0.2, 0.3}};
   turned.axes = Eigen::AngleAxisd(0.3, Vec3::UnitZ()).toRotationMatrix();
   for (const auto& make_distance : {Distance::periodic, Distance::minimum_image}) {
-    EXPECT_NE(
-        test::message_of([&] { make_distance(Vec3(1, 0, 0), turned); }).find("--angle"),
-        std::string::npos);
-    for (const Vec3& period : {Vec3(0, 0, 0), Vec3(-1, 0, 0), Vec3(infinite, 0, 0),
-                               Vec3(std::nan(""), 1, 0)})
+    EXPECT_NE(test::message_of([&] { make_distance(Vec3(1, 0, 0), turned); }).find("--angle"),
+              std::string::npos);
+    for (const Vec3& period :
+         {Vec3(0, 0, 0), Vec3(-1, 0, 0), Vec3(infinite, 0, 0), Vec3(std::nan(""), 1, 0)})
       EXPECT_THROW(make_distance(period, {.lengths = {1, 1, 1}}), InputError);
   }
   EXPECT_THROW(Correlation(points, Autocorrelation({.length = 0.1}),
@@ -303,7 +302,8 @@ TEST(Correlation, ReportsTheLargestDifferenceToTheMinimumImage) {
 
 TEST(Correlation, AmongSomePointsIsTheCorrelationOfThose) {
   const std::vector<Vec3> points = random_points(20, Vec3(1, 1, 1), 12);
-  const Correlation all(points, Autocorrelation({.length = 0.3}), Distance::periodic(Vec3(1, 1, 0)));
+  const Correlation all(points, Autocorrelation({.length = 0.3}),
+                        Distance::periodic(Vec3(1, 1, 0)));
   const std::vector<Index> some = {17, 3, 4};
   const Correlation part = all.among(some);
   ASSERT_EQ(part.n_points(), 3);

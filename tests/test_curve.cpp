@@ -25,7 +25,8 @@ TEST(CurvePlaces, OfAnOpenChainStartAtItsFirstEnd) {
   const CurvePlaces curve = curve_places(surface);
   const double a = std::hypot(3, 4), b = std::hypot(4, 1), c = 2;  // 1-3, 3-0, 0-2
   const std::vector<double> s = {a + b, 0, a + b + c, a};
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR((curve.places[i] - Vec3(s[i], 0, 0)).norm(), 0, 1e-14);
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_NEAR((curve.places[i] - Vec3(s[i], 0, 0)).norm(), 0, 1e-14);
   ASSERT_EQ(curve.lengths.size(), 1u);
   EXPECT_NEAR(curve.lengths[0], a + b + c, 1e-14);
   EXPECT_EQ(curve.closed_lengths, std::vector<double>{infinite});
@@ -54,8 +55,8 @@ TEST(CurveDistance, OnAClosedCurveIsTheShorterWayRound) {
   const Distance distance = Distance::curve(curve.closed_lengths);
   for (Index i = 0; i < n; ++i)
     for (Index j = 0; j < n; ++j) {
-      const double angle = std::acos(std::clamp(
-          surface.points[i].dot(surface.points[j]) / (radius * radius), -1.0, 1.0));
+      const double angle = std::acos(
+          std::clamp(surface.points[i].dot(surface.points[j]) / (radius * radius), -1.0, 1.0));
       const double sides = std::round(angle / (2 * std::numbers::pi / n));
       EXPECT_NEAR(distance(curve.places[i], curve.places[j]), sides * side, 1e-12);
     }
@@ -80,11 +81,13 @@ TEST(CurveDistance, SeparatesPieces) {
 
 TEST(CurvePlaces, RefuseBranchesAndFacesAndLostPoints) {
   const std::vector<Vec3> points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 7, 0}};
-  const std::string branch = test::message_of(
-      [&] { curve_places(test::curve_of(points, {{0, 1}, {1, 2}, {1, 3}})); });
+  const std::string branch = test::message_of([&] {
+    curve_places(test::curve_of(points, {{0, 1}, {1, 2}, {1, 3}}));
+  });
   EXPECT_NE(branch.find("(1, 0, 0)"), std::string::npos) << branch;
-  const std::string lost =
-      test::message_of([&] { curve_places(test::curve_of(points, {{0, 1}, {1, 2}})); });
+  const std::string lost = test::message_of([&] {
+    curve_places(test::curve_of(points, {{0, 1}, {1, 2}}));
+  });
   EXPECT_NE(lost.find("(1, 7, 0)"), std::string::npos) << lost;
   Surface triangle = test::curve_of(points, {{0, 1}});
   triangle.face_points = {0, 1, 2};
