@@ -39,20 +39,18 @@ double mixture_rho(std::span<const GaussianTerm> terms, double r) {
 
 GaussianMixture fit_gaussian_mixture(std::span<const CorrelationPair> samples,
                                      const MixtureFitOptions& options) {
-  // One equation demands a sum of 1, so heavily that dividing by it afterwards changes nothing.
-  const double demand = 1e3 * std::sqrt(static_cast<double>(samples.size()));
+  // With sum x = 1, A x - rho = (A - rho 1^T) x. The smallest |(A - rho 1^T) x|^2 + (sum x - 1)^2
+  // is taken where x / sum x is the best of all vectors of sum 1: for each direction the factor
+  // that is best leaves a monotone function of the first norm.
   const std::vector<double> scales = ladder(options);
   const auto m = static_cast<Eigen::Index>(samples.size());
   const auto n = static_cast<Eigen::Index>(scales.size());
   Eigen::MatrixXd a(m + 1, n);
-  Eigen::VectorXd b(m + 1);
-  for (Eigen::Index i = 0; i < m; ++i) {
-    b[i] = samples[i].rho;
-    for (Eigen::Index k = 0; k < n; ++k) a(i, k) = gaussian(samples[i].r, scales[k]);
-  }
-  a.row(m).setConstant(demand);
-  b[m] = demand;
-  const Eigen::VectorXd weights = nonnegative_least_squares(a, b);
+  for (Eigen::Index i = 0; i < m; ++i)
+    for (Eigen::Index k = 0; k < n; ++k)
+      a(i, k) = gaussian(samples[i].r, scales[k]) - samples[i].rho;
+  a.row(m).setOnes();
+  const Eigen::VectorXd weights = nonnegative_least_squares(a, Eigen::VectorXd::Unit(m + 1, m));
 
   GaussianMixture result;
   for (Eigen::Index k = 0; k < n; ++k)

@@ -154,7 +154,9 @@ void ImageSum::add_term(const GaussianTerm& term, std::vector<double>& values) c
 void ImageSum::fill_table(std::span<const GaussianTerm> terms) {
   std::vector<double> values;
   for (const GaussianTerm& term : terms) add_term(term, values);
-  if (!values.empty()) far_.set_values(std::move(values));
+  if (values.empty()) return;
+  const double largest = *std::max_element(values.begin(), values.end());
+  far_.set_values(std::move(values), 3e-14 * (1 + largest));
 }
 
 // In the order of the axes, stretched, 0 <= x <= range.

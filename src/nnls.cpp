@@ -21,8 +21,7 @@ class ActiveSet {
       : a_(a), b_(b), x_(Eigen::VectorXd::Zero(a.cols())), is_barred_(a.cols(), 0) {
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
     // What round-off leaves of a gradient that is 0.
-    tolerance_ =
-        10 * epsilon * static_cast<double>(a.rows()) * a.colwise().norm().transpose() * b.norm();
+    tolerance_ = 4 * epsilon * b.norm() * a.colwise().norm().transpose();
   }
 
   /// Takes in the column along which |A x - b| falls fastest; false if there is none. A column

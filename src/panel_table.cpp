@@ -46,10 +46,14 @@ std::vector<double> PanelTable::nodes(std::size_t axis) const {
   return result;
 }
 
-void PanelTable::set_values(std::vector<double> values) {
+void PanelTable::set_values(std::vector<double> values, double tolerance) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (!ends_[axis].empty()) transform_along(axis, values);
-  group_by_cell(values);
+  cells_.clear();
+  coefficients_.clear();
+  for (std::size_t p = 0; p < n_panels(0); ++p)
+    for (std::size_t q = 0; q < n_panels(1); ++q)
+      for (std::size_t r = 0; r < n_panels(2); ++r) add_cell(values, {p, q, r}, tolerance);
 }
 
 void PanelTable::transform_along(std::size_t axis, std::vector<double>& values) const {
@@ -69,17 +73,38 @@ void PanelTable::transform_along(std::size_t axis, std::vector<double>& values) 
     }
 }
 
-void PanelTable::group_by_cell(std::span<const double> values) {
-  const std::size_t n0 = n_coefficients(0), n1 = n_coefficients(1), n2 = n_coefficients(2);
-  coefficients_.clear();
-  coefficients_.reserve(values.size());
-  for (std::size_t p = 0; p < n_panels(0); ++p)
-    for (std::size_t q = 0; q < n_panels(1); ++q)
-      for (std::size_t r = 0; r < n_panels(2); ++r)
-        for (std::size_t i = p * n0; i < (p + 1) * n0; ++i)
-          for (std::size_t j = q * n1; j < (q + 1) * n1; ++j)
-            for (std::size_t k = r * n2; k < (r + 1) * n2; ++k)
-              coefficients_.push_back(values[(i * n_nodes(1) + j) * n_nodes(2) + k]);
+double PanelTable::coefficient(std::span<const double> values, const Place& cell,
+                               const Place& degrees) const {
+  std::size_t at = 0;
+  for (std::size_t a = 0; a < 3; ++a)
+    at = at * n_nodes(a) + cell[a] * n_coefficients(a) + degrees[a];
+  return values[at];
+}
+
+// Leaves out the highest degrees along each axis whose coefficients together are below a third of
+// the tolerance; of a negligible cell nothing remains.
+void PanelTable::add_cell(std::span<const double> values, const Place& place, double tolerance) {
+  const Place all = {n_coefficients(0), n_coefficients(1), n_coefficients(2)};
+  const auto for_each_degree = [](const Place& n_degrees, const auto& visit) {
+    for (std::size_t i = 0; i < n_degrees[0]; ++i)
+      for (std::size_t j = 0; j < n_degrees[1]; ++j)
+        for (std::size_t k = 0; k < n_degrees[2]; ++k) visit(Place{i, j, k});
+  };
+  std::array<std::array<double, n>, 3> size_of_degree{};
+  for_each_degree(all, [&](const Place& degrees) {
+    const double size = std::abs(coefficient(values, place, degrees));
+    for (std::size_t a = 0; a < 3; ++a) size_of_degree[a][degrees[a]] += size;
+  });
+  Cell cell{coefficients_.size(), all};
+  for (std::size_t a = 0; a < 3; ++a) {
+    double dropped = 0;
+    while (cell.n[a] > 0 && (dropped += size_of_degree[a][cell.n[a] - 1]) < tolerance / 3)
+      --cell.n[a];
+  }
+  for_each_degree(cell.n, [&](const Place& degrees) {
+    coefficients_.push_back(coefficient(values, place, degrees));
+  });
+  cells_.push_back(cell);
 }
 
 // The panel, and the polynomials at the place in it.
@@ -99,16 +124,14 @@ double PanelTable::operator()(const Vec3& x) const {
   std::size_t cell = 0;
   for (std::size_t a = 0; a < 3; ++a)
     cell = cell * n_panels(a) + locate(a, x[static_cast<Eigen::Index>(a)], polynomials[a]);
-  const std::size_t n0 = n_coefficients(0), n1 = n_coefficients(1), n2 = n_coefficients(2);
-  const double* coefficient = coefficients_.data() + cell * n0 * n1 * n2;
+  const auto& [first, counts] = cells_[cell];
+  const auto [n0, n1, n2] = counts;
+  const double* coefficient = coefficients_.data() + first;
   Polynomials sums{};  // independent of each other, so that they can be added side by side
   for (std::size_t i = 0; i < n0; ++i)
     for (std::size_t j = 0; j < n1; ++j, coefficient += n2) {
       const double factor = polynomials[0][i] * polynomials[1][j];
-      if (n2 == n)
-        for (std::size_t k = 0; k < n; ++k) sums[k] += factor * coefficient[k];
-      else
-        sums[0] += factor * coefficient[0];
+      for (std::size_t k = 0; k < n2; ++k) sums[k] += factor * coefficient[k];
     }
   double sum = 0;
   for (std::size_t k = 0; k < n2; ++k) sum += sums[k] * polynomials[2][k];

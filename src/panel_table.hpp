@@ -25,10 +25,11 @@ class PanelTable {
   /// Places along an axis at which values are needed; 0 for an axis without panels.
   std::vector<double> nodes(std::size_t axis) const;
 
-  /// @param values  at all combinations of nodes, the last axis running fastest
-  void set_values(std::vector<double> values);
+  /// @param values     at all combinations of nodes, the last axis running fastest
+  /// @param tolerance  what may be left out of a cell, for speed
+  void set_values(std::vector<double> values, double tolerance);
 
-  bool is_empty() const { return coefficients_.empty(); }
+  bool is_empty() const { return cells_.empty(); }
 
   /// Outside of the panels the nearest place inside counts.
   double operator()(const Vec3& x) const;
@@ -43,9 +44,18 @@ class PanelTable {
   std::size_t n_nodes(std::size_t axis) const { return n_panels(axis) * n_coefficients(axis); }
   std::size_t locate(std::size_t axis, double x, Polynomials& polynomials) const;
   void transform_along(std::size_t axis, std::vector<double>& values) const;
-  void group_by_cell(std::span<const double> values);
+  /// Coefficients of one cell, and how many along each axis are not negligible.
+  struct Cell {
+    std::size_t first = 0;
+    std::array<std::size_t, 3> n{};
+  };
+  /// The numbers of polynomials along each axis.
+  using Place = std::array<std::size_t, 3>;
+  double coefficient(std::span<const double> values, const Place& cell, const Place& degrees) const;
+  void add_cell(std::span<const double> values, const Place& place, double tolerance);
 
   Ends ends_;
+  std::vector<Cell> cells_;           ///< the last axis running fastest
   std::vector<double> coefficients_;  ///< cell by cell, the last axis running fastest
 };
 
