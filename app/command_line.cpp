@@ -122,6 +122,10 @@ std::string refuse_option_as_value(const std::string& given) {
   return given.starts_with("--") ? "needs a value, not " + given : "";
 }
 
+/// Options that only job files can hold.
+template <class Member>
+constexpr bool is_table = std::is_same_v<Member, std::vector<Mask>>;
+
 /// Adds options to a verb; `only` names the ones that it takes, all if empty.
 class OptionAdder {
  public:
@@ -130,6 +134,14 @@ class OptionAdder {
 
   template <class Member>
   void operator()(const OptionText& text, Member& member) {
+    if constexpr (!is_table<Member>) add(text, member);
+  }
+
+  std::vector<CLI::Option*> added;
+
+ private:
+  template <class Member>
+  void add(const OptionText& text, Member& member) {
     if (!only_.empty() && std::find(only_.begin(), only_.end(), text.name) == only_.end()) return;
     CLI::Option* option = add_option(*app_, text, member);
     if (text.name != "input") option->type_name(std::string(text.value));
@@ -137,9 +149,6 @@ class OptionAdder {
     added.push_back(option);
   }
 
-  std::vector<CLI::Option*> added;
-
- private:
   CLI::App* app_;
   std::vector<std::string_view> only_;
 };

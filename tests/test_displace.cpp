@@ -229,7 +229,7 @@ TEST(Displace, NodesOfSecondOrderAndOfCurvesHaveTheCovariance) {
   for (const Mesh* const mesh : {&sphere, &circle}) {
     const std::vector<Surface> surfaces = {select_surface(*mesh)};
     ASSERT_EQ(surfaces[0].n_points(), mesh->n_nodes());
-    const FieldSampler sampler(surfaces[0].points, rho, Distance::euclidean());
+    const FieldSampler sampler(Correlation(surfaces[0].points, rho, Distance::euclidean()));
     constexpr int n_realizations = 4000;
     constexpr Index n = 200;
     const Index stride = mesh->n_nodes() / n;  // corners and others

@@ -236,7 +236,7 @@ TEST(MovePlane, MeanAreaOfARoughCircleIsTheExactOne) {
   const Surface circle =
       select_surface(test::polyline(test::circle_points(test::uneven_angles(64), 1), true));
   const Autocorrelation rho({.family = Family::gaussian, .length = 0.3});
-  const FieldSampler sampler(circle.points, rho, Distance::euclidean());
+  const FieldSampler sampler(Correlation(circle.points, rho, Distance::euclidean()));
   const double rq = 0.1;
   const double smooth = enclosed_volume(circle, circle.points);
   double expected = 0;

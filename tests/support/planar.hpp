@@ -99,7 +99,7 @@ inline Mesh strip(int n_x, int n_y, double length, double stretch = 0) {
     lower.insert(lower.end(), {node(i, 0), node(i + 1, 0)});
     upper.insert(upper.end(), {node(i, n_y), node(i + 1, n_y)});
   }
-  PeriodicLink link{.dimension = 1, .entity = 4, .master_entity = 3};
+  PeriodicLink link{1, 4, 3, {}, {}};
   for (int j = 0; j <= n_y; ++j) link.nodes.emplace_back(node(n_x, j), node(0, j));
   for (int j = 0; j < n_y; ++j)
     ends.insert(ends.end(), {node(0, j), node(0, j + 1), node(n_x, j), node(n_x, j + 1)});
