@@ -68,6 +68,7 @@ class VtkDataReader {
 
  private:
   void start(bool is_at_points);
+  bool read_attribute(const std::string& section);
   void read_scalars();
   void read_color_scalars();
   void read_lookup_table();

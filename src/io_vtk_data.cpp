@@ -67,9 +67,13 @@ bool VtkDataReader::read(const std::string& section) {
     read_field();
   else if (section == "METADATA")
     skip_metadata();
-  else if (!is_at_points_ && !is_at_cells_)
-    return false;
-  else if (section == "SCALARS")
+  else
+    return (is_at_points_ || is_at_cells_) && read_attribute(section);
+  return true;
+}
+
+bool VtkDataReader::read_attribute(const std::string& section) {
+  if (section == "SCALARS")
     read_scalars();
   else if (section == "COLOR_SCALARS")
     read_color_scalars();

@@ -20,7 +20,7 @@ namespace {
 const std::string text =
     "# made by hand\r\nMeshVersionFormatted 2\nDimension 3 # in space\n\n"
     "Triangles\n2\n1 2 3 7\n 1 3 4 -2\n"
-    "VERTICES\n5\n0 0 0 1\n1.0 0 0 0   1 1#here\n  0 0\n0 1.50e0\n0 4\n.5 .5 1 5\n"
+    "VERTICES\n5\n0 0 0 1\n1.0 0 0 0   1 1#here it is\n  0 0\n0 1.50e0\n0 4\n.5 .5 1 5\n"
     "Corners 2 1 2\nTetrahedra 1\n1 2 3 5 9\nRequiredTriangles 1 2\n"
     "SomethingNew 2\n1 2.5 3 4\nEnd\n";
 
@@ -140,7 +140,7 @@ void expect_two_triangles_and_a_tetrahedron(const Mesh& mesh) {
 }
 
 void lift(Mesh& mesh) {
-  mesh.nodes[2][2] = 0.25;
+  mesh.nodes[2] = {1, 1.75, 0.25};
   mesh.nodes[3] = {0, 1.625, -0.5};
 }
 
@@ -187,12 +187,13 @@ TEST(Medit, ComesOutIdenticalWhenNothingMoves) {
 
 // The comment stands between two coordinates of a vertex.
 TEST(Medit, ChangesInMovedCoordinatesOnly) {
-  test::expect_patched("a.mesh", text,
-                       replaced(replaced(text, "1#here\n  0 0\n", "1#here\n  0.25 0\n"),
-                                "1.50e0\n0 4", "1.625\n-0.5 4"),
-                       lift);
+  test::expect_patched(
+      "a.mesh", text,
+      replaced(replaced(text, "1#here it is\n  0 0\n", "1.75#here it is\n  0.25 0\n"),
+               "1.50e0\n0 4", "1.625\n-0.5 4"),
+      lift);
   std::vector<Vec3> moved = positions;
-  moved[2][2] = 0.25;
+  moved[2] = {1, 1.75, 0.25};
   moved[3] = {0, 1.625, -0.5};
   for (const Style& style : styles())
     test::expect_patched("a.meshb", binary(style), binary(style, moved), lift);

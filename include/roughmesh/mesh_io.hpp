@@ -23,7 +23,7 @@ namespace roughmesh {
 /// section
 Mesh read_mesh(const std::filesystem::path& path);
 
-/// Values at the nodes of a mesh, for formats that carry them (VTU, PLY).
+/// Values at the nodes of a mesh, for formats that carry them (VTU, legacy VTK, PLY).
 struct PointField {
   std::string name;
   int n_components = 1;
