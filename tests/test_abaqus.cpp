@@ -218,8 +218,7 @@ TEST(Abaqus, TellsWhatItDoesNotHold) {
   const test::TemporaryFolder folder;
   Mesh mesh = test::plate(1);
   mesh.blocks.push_back(test::make_block({ElementShape::point, 1, 1}, 0, {}, {0}, 100));
-  EXPECT_EQ(conversion_losses(mesh, folder / "a.inp"),
-            std::vector<std::string>{"1 point elements"});
+  EXPECT_EQ(conversion_losses(mesh, folder / "a.inp"), std::vector<std::string>{"1 points"});
   mesh.blocks = {test::make_block({ElementShape::triangle, 2, 6}, 0, {}, {0, 1, 2, 3, 0, 1}, 1)};
   mesh.blocks.push_back(
       test::make_block({ElementShape::quadrangle, 2, 9}, 0, {}, {0, 1, 2, 3, 0, 1, 2, 3, 0}, 2));
