@@ -51,9 +51,9 @@ std::vector<std::string> set_names(const Mesh& mesh) {
   std::set<std::pair<int, std::string>> taken;
   std::vector<std::string> names;
   for (const PhysicalGroup& group : mesh.groups) {
-    std::string name = quoted_name(label(group));
+    std::string name = quoted_name(group_label(group));
     if (!taken.emplace(group.dimension, upper(name)).second) {
-      name = quoted_name(fmt::format("{}_{}", label(group), group.tag));
+      name = quoted_name(fmt::format("{}_{}", group_label(group), group.tag));
       taken.emplace(group.dimension, upper(name));
     }
     names.push_back(std::move(name));

@@ -93,7 +93,7 @@ void write_groups(const Mesh& mesh, const NewNumbers& numbers, OutputFile& outpu
     if (entities.empty() || mesh.groups[g].dimension == 0) continue;
     write_numbers({group_number[g], 0, 0, 0, 0, 0, 0, static_cast<Tag>(entities.size() / 4)},
                   output);
-    output.write(one_line(label(mesh.groups[g])) + "\n");
+    output.write(one_line(group_label(mesh.groups[g])) + "\n");
     write_numbers(entities, output);
   }
   output.write("    -1\n");

@@ -37,7 +37,7 @@ NewNumbers new_numbers(const Mesh& mesh, Tag largest) {
   return numbers;
 }
 
-std::string label(const PhysicalGroup& group) {
+std::string group_label(const PhysicalGroup& group) {
   if (!group.name.empty()) return group.name;
   return fmt::format("GROUP_{}_{}", group.dimension, group.tag);
 }

@@ -21,7 +21,7 @@ struct NewNumbers {
 NewNumbers new_numbers(const Mesh& mesh, Tag largest);
 
 /// A group's name, or GROUP_DIMENSION_TAG for one without.
-std::string label(const PhysicalGroup& group);
+std::string group_label(const PhysicalGroup& group);
 
 /// Positions in Mesh::blocks of the blocks in each group.
 std::map<std::pair<int, Tag>, std::vector<std::size_t>> blocks_of_groups(const Mesh& mesh);

@@ -136,13 +136,18 @@ inline Mesh second_order_zoo(bool with_pyramid) {
   return mesh;
 }
 
-/// Boxes of gmsh with all shapes it makes of order 2, as a file of its own writing.
+enum class Cells { tetrahedra, prisms, hexahedra };
+
+/// A box of cells of order 2, as a file of gmsh's own writing.
 inline std::filesystem::path gmsh_box(const TemporaryFolder& folder, const std::string& extension,
-                                      bool recombine, const std::string& layers = "2") {
+                                      Cells cells) {
+  const std::string recombine = cells == Cells::tetrahedra ? "" : "Recombine; ";
+  const std::string quadrangles = cells == Cells::hexahedra
+                                      ? "Transfinite Surface{1};\nRecombine Surface{1};\n"
+                                      : std::string();
   write_bytes(folder / "box.geo",
-              "SetFactory(\"OpenCASCADE\");\nRectangle(1) = {0, 0, 0, 1, 2};\n"
-              "a[] = Extrude {0, 0, 1} { Surface{1}; Layers{" +
-                  layers + "}; " + (recombine ? "Recombine; " : "") +
+              "SetFactory(\"OpenCASCADE\");\nRectangle(1) = {0, 0, 0, 1, 2};\n" + quadrangles +
+                  "a[] = Extrude {0, 0, 1} { Surface{1}; Layers{2}; " + recombine +
                   "};\nPhysical Volume(\"inside\", 7) = {a[1]};\n"
                   "Physical Surface(\"top\", 3) = {a[0]};\nPhysical Surface(\"base\", 4) = {1};\n"
                   "MeshSize {:} = 1;\n");
@@ -150,6 +155,15 @@ inline std::filesystem::path gmsh_box(const TemporaryFolder& folder, const std::
   run("gmsh -3 -order 2 -setnumber Mesh.SecondOrderIncomplete 1 " + (folder / "box.geo").string() +
       " -o " + file.string() + " > /dev/null 2>&1");
   return file;
+}
+
+/// Has the mesh cells of the kind, of order 2?
+inline bool has_cells(const Mesh& mesh, Cells cells) {
+  constexpr std::array shapes = {ElementShape::tetrahedron, ElementShape::prism,
+                                 ElementShape::hexahedron};
+  return std::any_of(mesh.blocks.begin(), mesh.blocks.end(), [&](const ElementBlock& block) {
+    return block.type.shape == shapes[static_cast<std::size_t>(cells)] && block.type.order == 2;
+  });
 }
 
 /// The mesh that gmsh makes of a file.
