@@ -18,6 +18,10 @@ using namespace roughmesh;
 
 namespace {
 
+Correlation correlation_of(const Surface& surface, const Autocorrelation& acf) {
+  return {surface.points, acf, Distance::euclidean()};
+}
+
 // Plate whose squares grow along x: node areas differ by a factor of 20.
 struct GradedPlate {
   Mesh mesh;
@@ -109,7 +113,7 @@ void expect_law_of_sq(const GradedPlate& plate, const std::vector<double>& weigh
   }
   const double mean = sum / n, spread = std::sqrt(squares / n - mean * mean);
   const ExpectedSq expected =
-      expected_sq(plate.surface, acf, Distance::euclidean(), {.weights = weights, .areas = areas});
+      expected_sq(plate.surface, correlation_of(plate.surface, acf), {.weights = weights, .areas = areas});
   EXPECT_NEAR(expected.mean, mean, (4.5 / std::sqrt(n) + 0.02) * spread);
   EXPECT_NEAR(expected.standard_deviation, spread,
               (4.5 * 1.2 / std::sqrt(2.0 * n) + 0.02) * spread);
@@ -136,10 +140,9 @@ TEST(MaskedStatistics, MomentsAreTracesOfTheCentredCovariance) {
     const Autocorrelation acf({.length = length});
     const ExpectedSq all = by_traces(plate.surface, acf, weights, plate.surface.areas);
     const ExpectedSq inner = by_traces(plate.surface, acf, weights, areas);
-    const Distance euclidean = Distance::euclidean();
-    const ExpectedSq of_all = expected_sq(plate.surface, acf, euclidean, {.weights = weights});
+    const ExpectedSq of_all = expected_sq(plate.surface, correlation_of(plate.surface, acf), {.weights = weights});
     const ExpectedSq of_inner =
-        expected_sq(plate.surface, acf, euclidean, {.weights = weights, .areas = areas});
+        expected_sq(plate.surface, correlation_of(plate.surface, acf), {.weights = weights, .areas = areas});
     EXPECT_NEAR(of_all.mean, all.mean, 1e-12);
     EXPECT_NEAR(of_all.standard_deviation, all.standard_deviation, 1e-11);
     EXPECT_NEAR(of_inner.mean, inner.mean, 1e-12);
@@ -163,7 +166,7 @@ TEST(MaskedStatistics, SampledSumsAgreeWithExactOnes) {
     const Autocorrelation acf({.length = length});
     const ExpectedSq exact = by_traces(surface, acf, weights, areas);
     const ExpectedSq sampled =
-        expected_sq(surface, acf, Distance::euclidean(), {.weights = weights});
+        expected_sq(surface, correlation_of(surface, acf), {.weights = weights});
     const double tolerance = 0.01 * exact.standard_deviation;
     EXPECT_NEAR(sampled.mean, exact.mean, tolerance) << radius;
     EXPECT_NEAR(sampled.standard_deviation, exact.standard_deviation, tolerance) << radius;
@@ -174,13 +177,13 @@ TEST(MaskedStatistics, WeightsOfOneAndAllAreasChangeNothing) {
   const GradedPlate plate(10);
   const std::vector<double> ones(plate.surface.points.size(), 1.0);
   const Autocorrelation acf({.length = 0.2});
-  const ExpectedSq plain = expected_sq(plate.surface, acf, Distance::euclidean());
-  const ExpectedSq masked = expected_sq(plate.surface, acf, Distance::euclidean(),
+  const ExpectedSq plain = expected_sq(plate.surface, correlation_of(plate.surface, acf));
+  const ExpectedSq masked = expected_sq(plate.surface, correlation_of(plate.surface, acf),
                                         {.weights = ones, .areas = plate.surface.areas});
   EXPECT_NEAR(masked.mean, plain.mean, 1e-14);
   EXPECT_NEAR(masked.standard_deviation, plain.standard_deviation, 1e-14);
   const std::vector<double> zeros(ones.size(), 0.0);
-  EXPECT_EQ(expected_sq(plate.surface, acf, Distance::euclidean(), {.weights = zeros}).mean, 0);
+  EXPECT_EQ(expected_sq(plate.surface, correlation_of(plate.surface, acf), {.weights = zeros}).mean, 0);
 }
 
 // Heights that are wild where the area is 0 leave no trace.
@@ -211,7 +214,7 @@ TEST(MaskedStatistics, AreasAndWeightsOutOfRangeAreRefused) {
     std::vector<double> values(n, 0.5);
     values[3] = bad;
     EXPECT_THROW(height_statistics(plate.surface, heights, values), InputError);
-    EXPECT_THROW(expected_sq(plate.surface, acf, Distance::euclidean(), {.weights = values}),
+    EXPECT_THROW(expected_sq(plate.surface, correlation_of(plate.surface, acf), {.weights = values}),
                  InputError);
   }
   for (const std::vector<double>& areas : {std::vector<double>(n, 0.0), std::vector<double>(3, 1.)})

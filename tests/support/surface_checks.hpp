@@ -17,7 +17,6 @@
 namespace roughmesh::test {
 
 inline constexpr ElementType quadrangle_type{ElementShape::quadrangle, 1, 4};
-inline constexpr ElementType line_type{ElementShape::line, 1, 2};
 
 /// Two triangles and a quadrangle on a strip; node 6 is at the position of node 0, node 7 is used
 /// by nothing. All coordinates are numbers of float32.
