@@ -20,8 +20,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "text.hpp"
-
 namespace roughmesh::detail {
 namespace {
 
@@ -253,6 +251,14 @@ std::string one_line(std::string_view text) {
   return text.size() > longest ? line + "..." : line;
 }
 
+// Without the asterisks that OpenCASCADE frames its messages with.
+std::string_view bare(std::string_view text) {
+  const auto is_frame = [](char c) { return c == ' ' || c == '\r' || c == '\t' || c == '*'; };
+  while (!text.empty() && is_frame(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_frame(text.back())) text.remove_suffix(1);
+  return text;
+}
+
 }  // namespace
 
 GmshOutcome run_gmsh(const ScratchFolder& folder, const GmshCall& call) {
@@ -273,12 +279,12 @@ std::string first_error(const std::string& output) {
   std::string_view first;
   for (std::string_view rest = output; !rest.empty();) {
     const std::size_t end = std::min(rest.find('\n'), rest.size());
-    const std::string_view line = trimmed(rest.substr(0, end));
+    const std::string_view line = bare(rest.substr(0, end));
     rest.remove_prefix(std::min(end + 1, rest.size()));
     for (const std::string_view prefix : {"Error", "Fatal", "ERR "}) {
       if (!line.starts_with(prefix)) continue;
       const std::size_t colon = line.find(':');
-      return one_line(colon == std::string_view::npos ? line : trimmed(line.substr(colon + 1)));
+      return one_line(colon == std::string_view::npos ? line : bare(line.substr(colon + 1)));
     }
     if (first.empty()) first = line;
   }

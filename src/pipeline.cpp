@@ -197,7 +197,8 @@ class Run {
       const Surface& surface = rough_.surfaces[s];
       report_.request.surfaces[s] = rough_.plans[s].request;
       const Correlation correlation = detail::correlation_of(rough_.plans[s], rough_.fields);
-      SurfaceReport& described = report_.surfaces.emplace_back(describe_surface(surface, rough_.plans[s]));
+      SurfaceReport& described =
+          report_.surfaces.emplace_back(describe_surface(surface, rough_.plans[s]));
       described.lengths = correlation.autocorrelation().equivalent_lengths();
       described.fit_residual = correlation.autocorrelation().fit_residual();
       described.resolution =

@@ -74,10 +74,9 @@ double squared_distance(const Simplex& simplex, const Vec3& x) {
 
 void append_simplices(ElementShape shape, std::span<const Vec3> corners,
                       std::vector<Simplex>& simplices) {
-  if (dimension(shape) < 2)
-    simplices.emplace_back(corners);
-  else if (dimension(shape) == 2)
-    append_polygon(corners, simplices);
+  if (dimension(shape) < 2) simplices.emplace_back(corners);
+  if (dimension(shape) == 2) append_polygon(corners, simplices);
+  if (dimension(shape) < 3) return;
   for (const std::vector<int>& face : local_faces(shape)) {
     std::array<Vec3, 4> of_face;
     for (std::size_t k = 0; k < face.size(); ++k) of_face[k] = corners[face[k]];

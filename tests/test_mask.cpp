@@ -143,7 +143,7 @@ TEST(Mask, WithoutMasksEveryWeightIsOne) {
 
 TEST(Mask, FadeOnAPlateIsTheStepOfTheDistanceToItsSides) {
   const Mesh mesh = test::framed_plate(20);
-  const Surface surface = select_surface(mesh);
+  const Surface surface = select_surface(mesh, {.groups = {"surface"}});
   const std::vector<double> weights = mask_weights(mesh, surface, {.fade = {{.width = 0.3}}});
   const auto to_side = [](const Vec3& x) { return std::min({x.x(), 1 - x.x(), x.y(), 1 - x.y()}); };
   expect_weights(surface, weights, [&](const Vec3& x) { return step(to_side(x) / 0.3); });

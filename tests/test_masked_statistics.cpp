@@ -112,8 +112,8 @@ void expect_law_of_sq(const GradedPlate& plate, const std::vector<double>& weigh
     squares += sq * sq;
   }
   const double mean = sum / n, spread = std::sqrt(squares / n - mean * mean);
-  const ExpectedSq expected =
-      expected_sq(plate.surface, correlation_of(plate.surface, acf), {.weights = weights, .areas = areas});
+  const ExpectedSq expected = expected_sq(plate.surface, correlation_of(plate.surface, acf),
+                                          {.weights = weights, .areas = areas});
   EXPECT_NEAR(expected.mean, mean, (4.5 / std::sqrt(n) + 0.02) * spread);
   EXPECT_NEAR(expected.standard_deviation, spread,
               (4.5 * 1.2 / std::sqrt(2.0 * n) + 0.02) * spread);
@@ -140,9 +140,10 @@ TEST(MaskedStatistics, MomentsAreTracesOfTheCentredCovariance) {
     const Autocorrelation acf({.length = length});
     const ExpectedSq all = by_traces(plate.surface, acf, weights, plate.surface.areas);
     const ExpectedSq inner = by_traces(plate.surface, acf, weights, areas);
-    const ExpectedSq of_all = expected_sq(plate.surface, correlation_of(plate.surface, acf), {.weights = weights});
-    const ExpectedSq of_inner =
-        expected_sq(plate.surface, correlation_of(plate.surface, acf), {.weights = weights, .areas = areas});
+    const ExpectedSq of_all =
+        expected_sq(plate.surface, correlation_of(plate.surface, acf), {.weights = weights});
+    const ExpectedSq of_inner = expected_sq(plate.surface, correlation_of(plate.surface, acf),
+                                            {.weights = weights, .areas = areas});
     EXPECT_NEAR(of_all.mean, all.mean, 1e-12);
     EXPECT_NEAR(of_all.standard_deviation, all.standard_deviation, 1e-11);
     EXPECT_NEAR(of_inner.mean, inner.mean, 1e-12);
@@ -183,7 +184,8 @@ TEST(MaskedStatistics, WeightsOfOneAndAllAreasChangeNothing) {
   EXPECT_NEAR(masked.mean, plain.mean, 1e-14);
   EXPECT_NEAR(masked.standard_deviation, plain.standard_deviation, 1e-14);
   const std::vector<double> zeros(ones.size(), 0.0);
-  EXPECT_EQ(expected_sq(plate.surface, correlation_of(plate.surface, acf), {.weights = zeros}).mean, 0);
+  EXPECT_EQ(expected_sq(plate.surface, correlation_of(plate.surface, acf), {.weights = zeros}).mean,
+            0);
 }
 
 // Heights that are wild where the area is 0 leave no trace.
@@ -214,8 +216,9 @@ TEST(MaskedStatistics, AreasAndWeightsOutOfRangeAreRefused) {
     std::vector<double> values(n, 0.5);
     values[3] = bad;
     EXPECT_THROW(height_statistics(plate.surface, heights, values), InputError);
-    EXPECT_THROW(expected_sq(plate.surface, correlation_of(plate.surface, acf), {.weights = values}),
-                 InputError);
+    EXPECT_THROW(
+        expected_sq(plate.surface, correlation_of(plate.surface, acf), {.weights = values}),
+        InputError);
   }
   for (const std::vector<double>& areas : {std::vector<double>(n, 0.0), std::vector<double>(3, 1.)})
     EXPECT_THROW(height_statistics(plate.surface, heights, areas), InputError);

@@ -331,8 +331,7 @@ TEST(WriteMesh, NamesTheExtensionsThatArePossible) {
     write_mesh(mesh, folder / "a.doc");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("use one of .msh, "), std::string::npos)
-        << error.what();
+    EXPECT_NE(std::string(error.what()).find("use one of "), std::string::npos) << error.what();
   }
   EXPECT_EQ(folder.n_files(), 1);
 }
@@ -468,7 +467,7 @@ TEST(WriteMesh, WritesOtherFormatsOnlyWherePositionsAloneChanged) {
   mesh.blocks[0].nodes = {0, 2, 1};
   EXPECT_NE(refusal(mesh, folder / "b.ply2")
                 .find("extension \".ply2\" is not written from this mesh, of which more than "
-                      "positions was changed; use one of .msh, "),
+                      "positions was changed; use one of "),
             std::string::npos);
   EXPECT_EQ(refusal(mesh, folder / "b.msh"), "written");
   EXPECT_EQ(read_mesh(folder / "b.msh").blocks[0].nodes, mesh.blocks[0].nodes);

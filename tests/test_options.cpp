@@ -225,7 +225,8 @@ TEST(Options, FadesArePositiveWidthsWithAGroup) {
   };
   for (const std::string text : {"", "0", "-1", "x", "1:", "1x", "inf", "nan", ":wall"})
     EXPECT_TRUE(fade_refused(text)) << text;
-  for (const std::string text : {"1", "0.5:wall", "2:a:b"}) EXPECT_FALSE(fade_refused(text)) << text;
+  for (const std::string text : {"1", "0.5:wall", "2:a:b"})
+    EXPECT_FALSE(fade_refused(text)) << text;
 }
 
 TEST(Options, OutputNamesFollowTheTemplate) {

@@ -228,6 +228,6 @@ TEST(Pipeline, WarnsOfWhatTheMeshCannotCarry) {
 
 TEST(Pipeline, PeriodicLinksThatWouldBreakAreRefused) {
   Mesh sphere = test::icosphere(1);
-  sphere.periodic_links = {{2, 1, 2, {}, {{0, 1}}}};
+  sphere.periodic_links = {{2, 1, 2, {}, {{0, 4}}}};  // no translation along an axis
   EXPECT_THROW(run(sphere, sphere_options()), InputError);
 }

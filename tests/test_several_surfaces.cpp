@@ -120,7 +120,8 @@ TEST(SeveralSurfaces, EachHasItsOwnRoughness) {
   EXPECT_EQ(json["surfaces"].size(), 2U);
   EXPECT_EQ(json["request"]["surface"][1]["rms"], 3 * rq);
   EXPECT_EQ(json["surface"], json["surfaces"][0]["surface"]);
-  EXPECT_EQ(json["realizations"][0]["surfaces"][1]["sq"], report.realizations[0].surfaces[1].heights.sq);
+  EXPECT_EQ(json["realizations"][0]["surfaces"][1]["sq"],
+            report.realizations[0].surfaces[1].heights.sq);
 }
 
 TEST(SeveralSurfaces, AFaceBelongsToOneOfThem) {

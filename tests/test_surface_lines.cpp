@@ -275,7 +275,8 @@ TEST(Curve, ResolutionIsThatOfALine) {
   for (int i = 0; i <= 50; ++i) points.emplace_back(0.1 * i, 0, 0);
   const Surface line = select_surface(test::polyline(points, false));
   const Autocorrelation rho({.family = Family::gaussian, .length = 0.5});
-  const Resolution r = assess_resolution(line, Correlation(line.points, rho, Distance::euclidean()));
+  const Resolution r =
+      assess_resolution(line, Correlation(line.points, rho, Distance::euclidean()));
   EXPECT_NEAR(r.rms_slope, std::sqrt(2 * (1 - rho.rho(0.1))) / 0.1, 1e-12);
   EXPECT_NEAR(*r.field_slope, 2, 1e-12);
   EXPECT_NEAR(r.spectrum_share_above_nyquist,
@@ -283,5 +284,7 @@ TEST(Curve, ResolutionIsThatOfALine) {
   EXPECT_TRUE(std::isinf(r.min_curvature_radius));
   const Surface circle =
       select_surface(test::polyline(test::circle_points(test::uneven_angles(60), 2), true));
-  EXPECT_NEAR(assess_resolution(circle, Correlation(circle.points, rho, Distance::euclidean())).min_curvature_radius, 2, 1e-12);
+  EXPECT_NEAR(assess_resolution(circle, Correlation(circle.points, rho, Distance::euclidean()))
+                  .min_curvature_radius,
+              2, 1e-12);
 }

@@ -103,7 +103,8 @@ inline Mesh strip(int n_x, int n_y, double length, double stretch = 0) {
   for (int j = 0; j <= n_y; ++j) link.nodes.emplace_back(node(n_x, j), node(0, j));
   for (int j = 0; j < n_y; ++j)
     ends.insert(ends.end(), {node(0, j), node(0, j + 1), node(n_x, j), node(n_x, j + 1)});
-  mesh.blocks = {make_block(line_type, 1, {1}, lower, 1), make_block(line_type, 2, {2}, upper, 1001),
+  mesh.blocks = {make_block(line_type, 1, {1}, lower, 1),
+                 make_block(line_type, 2, {2}, upper, 1001),
                  make_block(line_type, 3, {3}, ends, 2001),
                  make_block({ElementShape::quadrangle, 1, 4}, 1, {1}, faces, 3001)};
   mesh.groups = {{1, 1, "lower"}, {1, 2, "upper"}, {1, 3, "ends"}, {2, 1, "line"}};
