@@ -12,9 +12,6 @@
 namespace roughmesh::app {
 namespace {
 
-// What the method's source asks for: l of at least 2.5 mesh sizes.
-constexpr double sizes_per_length = 2.5;
-
 void print_mesh(const Mesh& mesh, const std::string& path) {
   fmt::print("{}  {}, {} nodes, {} elements\n", path, name(mesh.format), mesh.n_nodes(),
              n_elements(mesh));

@@ -79,7 +79,10 @@ void print_statistics(const SurfaceStatistics& s) {
 void print_summary(const Report& report, const std::string& path_of_report) {
   for (const RealizationReport& r : report.realizations) {
     fmt::print("{}", r.path);
-    for (const SurfaceStatistics& surface : r.surfaces) print_statistics(surface);
+    for (std::size_t s = 0; s < r.surfaces.size(); ++s) {
+      if (r.surfaces.size() > 1) fmt::print("  {}:", list_of(report.surfaces[s].groups));
+      print_statistics(r.surfaces[s]);
+    }
     fmt::print("  min quality {:.3g} (before {:.3g})\n", r.min_quality, r.min_quality_before);
   }
   for (const SurfaceReport& surface : report.surfaces)

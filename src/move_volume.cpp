@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -24,7 +25,7 @@ struct VolumeMover::Plan {
   // None without elements to deform.
   std::unique_ptr<const detail::HarmonicExtension> extension;
   std::unique_ptr<const detail::Followers> followers;
-  Index n_wall_nodes = 0;
+  std::vector<Index> wall_nodes;
 };
 
 namespace {
@@ -169,7 +170,9 @@ VolumeMover::VolumeMover(const Mesh& mesh, std::span<const Surface> surfaces, Vo
   plan->nodes = mesh.nodes;
   plan->moved_nodes = moved_nodes(surfaces);
   const NodeFlags on_wall = detail::wall_nodes(mesh, surfaces);
-  for (const Index node : plan->moved_nodes) plan->n_wall_nodes += on_wall[node];
+  std::copy_if(plan->moved_nodes.begin(), plan->moved_nodes.end(),
+               std::back_inserter(plan->wall_nodes),
+               [&](Index node) { return on_wall[node] != 0; });
 
   const int cell_dimension = surfaces.front().dimension + 1;
   const bool moves_interior =
@@ -196,7 +199,7 @@ VolumeMethod VolumeMover::method() const {
   return plan_->extension ? VolumeMethod::harmonic : VolumeMethod::none;
 }
 
-Index VolumeMover::n_wall_nodes() const { return plan_->n_wall_nodes; }
+const std::vector<Index>& VolumeMover::wall_nodes() const { return plan_->wall_nodes; }
 
 std::vector<Vec3> VolumeMover::move(std::span<const Vec3> displacements) const {
   const Plan& plan = *plan_;

@@ -13,6 +13,8 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include "roughmesh/resolution.hpp"
+
 #include "json_numbers.hpp"
 #include "options_json.hpp"
 
@@ -348,7 +350,7 @@ GeometryOptions geometry_options(const RoughenOptions& o) {
   if (o.mesh_size)
     options.mesh_size = *o.mesh_size;
   else if (!is_script)
-    options.mesh_size = Autocorrelation(autocorrelation_options(first)).length() / 2.5;
+    options.mesh_size = Autocorrelation(autocorrelation_options(first)).length() / sizes_per_length;
   return options;
 }
 

@@ -131,14 +131,14 @@ std::vector<Vec3> differences(std::span<const Vec3> after, std::span<const Vec3>
 }
 
 /// What helps against inverted elements; a finer mesh does not, it makes them smaller.
-std::string remedy(std::span<const FieldPlan> fields, const VolumeMover& mover) {
+std::string remedy(std::span<const FieldPlan> fields, Index n_wall_nodes) {
   const bool is_smooth = std::all_of(fields.begin(), fields.end(), [](const FieldPlan& field) {
     return field.correlation.autocorrelation().slope_variance().has_value();
   });
   std::string text = "lower --rms";
   text += is_smooth ? " or use a longer --length"
                     : " or take a smoother --acf (slopes of this one grow as the mesh is refined)";
-  if (mover.n_wall_nodes() > 0)
+  if (n_wall_nodes > 0)
     text += "; the rough surface ends on faces that stay, where elements invert first: --fade";
   return text + "; --allow-invalid writes it all the same";
 }
@@ -171,7 +171,8 @@ class Run {
     const VolumeMover mover = timed(times().volume, [&] {
       return VolumeMover(mesh_, rough_.surfaces, volume_method(options_));
     });
-    detail::warn_of_walls(report_, mover);
+    n_wall_nodes_ = detail::n_moving(rough_, mesh_, mover.wall_nodes());
+    detail::warn_of_walls(report_, n_wall_nodes_);
     quality_before_ = timed(times().check, [&] { return min_quality(mesh_); });
     prepare_fields();
     RoughMesh rough{.mesh = mesh_};
@@ -249,7 +250,7 @@ class Run {
         timed(times().displace, [&] { return displace_nodes(rough_.surfaces, heights); });
     rough.mesh.nodes = timed(times().volume, [&] { return mover.move(displacements); });
     rough.check = timed(times().check, [&] { return check_mesh(mesh_, rough.mesh.nodes); });
-    refuse_invalid(rough, remedy(rough_.fields, mover), report_);
+    refuse_invalid(rough, remedy(rough_.fields, n_wall_nodes_), report_);
     if (report_.realizations.empty()) detail::warn_of_curved_elements(report_, rough.check);
     rough.heights = at_nodes<double>(
         mesh_, rough_.surfaces, [&](std::size_t s) -> const auto& { return heights[s]; }, 0.0);
@@ -277,6 +278,7 @@ class Run {
   RoughSurfaces rough_;
   std::vector<SqTarget> targets_;       // one for each surface
   std::vector<FieldSampler> samplers_;  // one for each field
+  Index n_wall_nodes_ = 0;              // that move
   double quality_before_ = 0;
 };
 

@@ -17,7 +17,7 @@ namespace roughmesh {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double largest_h_over_l = 1 / 2.5;  // Loth et al. (2020)
+constexpr double largest_h_over_l = 1 / sizes_per_length;
 constexpr double largest_share_above_nyquist = 0.05;
 // The largest edge may be this many times the median of the rule: the diagonals of squares (1.4)
 // and the spread of usual triangulations must not warn.

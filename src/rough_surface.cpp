@@ -156,6 +156,16 @@ Correlation correlation_of(const SurfacePlan& surface, std::span<const FieldPlan
   return fields[surface.field].correlation.among(surface.field_point);
 }
 
+Index n_moving(const RoughSurfaces& rough, const Mesh& mesh, std::span<const Index> nodes) {
+  std::vector<bool> moves(mesh.nodes.size(), false);
+  for (std::size_t s = 0; s < rough.surfaces.size(); ++s)
+    for (std::size_t i = 0; i < rough.surfaces[s].nodes.size(); ++i)
+      if (rough.plans[s].weights[rough.surfaces[s].point_of_node[i]] > 0)
+        moves[rough.surfaces[s].nodes[i]] = true;
+  return static_cast<Index>(
+      std::count_if(nodes.begin(), nodes.end(), [&](Index node) { return moves[node]; }));
+}
+
 std::vector<double> heights_of(const SurfacePlan& surface, const FieldPlan& field,
                                std::span<const double> samples) {
   std::vector<double> heights(surface.weights.size());

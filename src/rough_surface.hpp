@@ -47,6 +47,9 @@ RoughSurfaces prepare_surfaces(const Mesh& mesh, std::span<const Roughness> requ
 /// Correlation between the points of one surface.
 Correlation correlation_of(const SurfacePlan& surface, std::span<const FieldPlan> fields);
 
+/// How many of these nodes of the mesh the roughness moves: of weight above 0 on some surface.
+Index n_moving(const RoughSurfaces& rough, const Mesh& mesh, std::span<const Index> nodes);
+
 /// Heights z_i = m_i Rq d_i of the points of one surface, from the samples at its field's masters
 /// (docs/math.md, eq. 3 and 43).
 std::vector<double> heights_of(const SurfacePlan& surface, const FieldPlan& field,

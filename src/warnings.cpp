@@ -111,13 +111,13 @@ void warn_of_curved_elements(Report& report, const MeshCheck& check) {
         check.n_curved));
 }
 
-void warn_of_walls(Report& report, const VolumeMover& mover) {
-  if (mover.n_wall_nodes() > 0)
+void warn_of_walls(Report& report, Index n_nodes) {
+  if (n_nodes > 0)
     report.warnings.push_back(fmt::format(
         "{} nodes of the rough surface lie on faces that are not roughened; they move along the "
         "normals of the rough surface while the other nodes of those faces stay, so elements there "
         "invert first; --fade lets the roughness end before",
-        mover.n_wall_nodes()));
+        n_nodes));
 }
 
 }  // namespace roughmesh::detail

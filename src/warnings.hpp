@@ -25,7 +25,7 @@ void warn_of_fields(Report& report);
 /// Elements that were checked at their corners only.
 void warn_of_curved_elements(Report& report, const MeshCheck& check);
 
-/// Nodes of the surfaces on faces that stay.
-void warn_of_walls(Report& report, const VolumeMover& mover);
+/// Nodes of the surfaces that move although they lie on faces that stay.
+void warn_of_walls(Report& report, Index n_nodes);
 
 }  // namespace roughmesh::detail

@@ -78,7 +78,7 @@ TEST(MovePlane, TheInteriorFollowsAndTheBoundaryStays) {
       const Surface surface = curve(mesh, {group});
       const VolumeMover mover(mesh, test::only(surface));
       EXPECT_EQ(mover.method(), VolumeMethod::harmonic);
-      EXPECT_EQ(mover.n_wall_nodes(), 0);
+      EXPECT_EQ(mover.wall_nodes().size(), 0U);
       const std::vector<Vec3> moved = roughened(mesh, surface, 0.04);
       const MeshCheck check = check_mesh(mesh, moved);
       EXPECT_TRUE(check.valid());
@@ -160,7 +160,7 @@ TEST(MovePlane, SeveralCurvesAtOnce) {
   const Surface all = curve(mesh, {"all"});
   EXPECT_EQ(all.n_components, 3);
   const VolumeMover mover(mesh, test::only(all));
-  EXPECT_EQ(mover.n_wall_nodes(), 0);
+  EXPECT_EQ(mover.wall_nodes().size(), 0U);
   EXPECT_TRUE(check_mesh(mesh, roughened(mesh, all, 0.02)).valid());
   const std::vector<Surface> apart = {curve(mesh, {"hole"}), curve(mesh, {"rim"})};
   const std::vector<std::vector<double>> heights = {bumps(apart[0], 0.02), bumps(apart[1], 0.02)};
@@ -178,7 +178,7 @@ TEST(MovePlane, AnOpenInnerCurve) {
   block.tags.resize(12);
   const Surface open = curve(mesh, {"interface"});
   EXPECT_EQ(open.n_border_edges, 2);
-  EXPECT_EQ(VolumeMover(mesh, test::only(open)).n_wall_nodes(), 0);
+  EXPECT_EQ(VolumeMover(mesh, test::only(open)).wall_nodes().size(), 0U);
   EXPECT_TRUE(check_mesh(mesh, roughened(mesh, open, 0.03)).valid());
 }
 
@@ -190,12 +190,13 @@ TEST(MovePlane, WallNodesAreWhereOtherLinesBegin) {
   rest.tags.erase(rest.tags.begin(), rest.tags.begin() + 10);
   mesh.blocks[2].nodes.resize(10 * 2);
   mesh.blocks[2].tags.resize(10);
-  EXPECT_EQ(VolumeMover(mesh, test::only(curve(mesh, {"rim"}))).n_wall_nodes(), 2);  // no elements
+  EXPECT_EQ(VolumeMover(mesh, test::only(curve(mesh, {"rim"}))).wall_nodes().size(),
+            2U);  // no elements
   rest.physical_groups = {9};
   mesh.blocks.push_back(rest);
   mesh.groups.push_back({1, 9, "rest"});
-  EXPECT_EQ(VolumeMover(mesh, test::only(curve(mesh, {"rim"}))).n_wall_nodes(), 2);
-  EXPECT_EQ(VolumeMover(mesh, test::only(curve(mesh, {"rim", "rest"}))).n_wall_nodes(), 0);
+  EXPECT_EQ(VolumeMover(mesh, test::only(curve(mesh, {"rim"}))).wall_nodes().size(), 2U);
+  EXPECT_EQ(VolumeMover(mesh, test::only(curve(mesh, {"rim", "rest"}))).wall_nodes().size(), 0U);
 }
 
 // The sign of a triangle is seen along the normal of the plane, whichever way it runs in the file.
@@ -225,7 +226,7 @@ TEST(MovePlane, LinesOnlyMoveAlone) {
   const Surface circle = select_surface(mesh);
   const VolumeMover mover(mesh, test::only(circle));
   EXPECT_EQ(mover.method(), VolumeMethod::none);
-  EXPECT_EQ(mover.n_wall_nodes(), 0);
+  EXPECT_EQ(mover.wall_nodes().size(), 0U);
   EXPECT_TRUE(check_mesh(mesh, roughened(mesh, circle, 0.1)).valid());
 }
 

@@ -102,7 +102,7 @@ TEST(MoveVolume, SurfaceNodesMoveAsToldAndOuterNodesStay) {
   const std::vector<Vec3> displacements = displace(surface, bumps(surface, 0.03));
   const VolumeMover mover(mesh, test::only(surface));
   EXPECT_EQ(mover.method(), VolumeMethod::harmonic);
-  EXPECT_EQ(mover.n_wall_nodes(), 0);
+  EXPECT_EQ(mover.wall_nodes().size(), 0U);
   const std::vector<Vec3> moved = mover.move(test::at_nodes(surface, displacements));
   for (std::size_t i = 0; i < surface.nodes.size(); ++i)
     EXPECT_EQ(moved[surface.nodes[i]],
@@ -144,7 +144,7 @@ TEST(MoveVolume, ConstantsAreReproduced) {
     const Surface boundary = select_surface(mesh);
     const Vec3 shift(0.3, -0.2, 0.1);
     const VolumeMover mover(mesh, test::only(boundary));
-    EXPECT_EQ(mover.n_wall_nodes(), 0);
+    EXPECT_EQ(mover.wall_nodes().size(), 0U);
     const std::vector<Vec3> moved = mover.move(test::at_nodes(boundary, constant(boundary, shift)));
     for (Index node = 0; node < mesh.n_nodes(); ++node)
       EXPECT_NEAR((moved[node] - mesh.nodes[node] - shift).norm(), 0, 1e-10);
@@ -224,11 +224,11 @@ TEST(MoveVolume, EveryShapeMovesWithItsTop) {
 TEST(MoveVolume, WallNodesAreCounted) {
   Mesh mesh = test::cell_box(ElementShape::hexahedron, 4);
   const Surface top = select_surface(mesh, {.groups = {"top"}});
-  EXPECT_EQ(VolumeMover(mesh, test::only(top)).n_wall_nodes(), 16);
+  EXPECT_EQ(VolumeMover(mesh, test::only(top)).wall_nodes().size(), 16U);
   const Surface middle = select_surface(mesh, {.groups = {"middle"}});
-  EXPECT_EQ(VolumeMover(mesh, test::only(middle)).n_wall_nodes(), 16);
+  EXPECT_EQ(VolumeMover(mesh, test::only(middle)).wall_nodes().size(), 16U);
   const Mesh plate = test::plate(4);
-  EXPECT_EQ(VolumeMover(plate, test::only(select_surface(plate))).n_wall_nodes(), 0);
+  EXPECT_EQ(VolumeMover(plate, test::only(select_surface(plate))).wall_nodes().size(), 0U);
 }
 
 // Volumes on either side of a crack have nodes of their own at equal positions.
@@ -251,7 +251,7 @@ TEST(MoveVolume, OneSideOfAContactMovesAlone) {
     const ElementBlock &lower = mesh.blocks[2], &upper = mesh.blocks[3];
     const Surface surface = select_surface(mesh, {.groups = {"middle"}});
     const VolumeMover mover(mesh, test::only(surface));
-    EXPECT_EQ(mover.n_wall_nodes(), 16);  // the rim lies on the sides of the lower body
+    EXPECT_EQ(mover.wall_nodes().size(), 16U);  // the rim lies on the sides of the lower body
     const std::vector<Vec3> moved =
         mover.move(test::at_nodes(surface, constant(surface, Vec3(0.01, 0, -0.05))));
     EXPECT_TRUE(check_mesh(mesh, moved).valid());
@@ -274,7 +274,7 @@ TEST(MoveVolume, TheBoundaryOfRepeatedElementsStays) {
     mesh.blocks.push_back(again);
     const Surface top = select_surface(mesh, {.groups = {"top"}});
     const VolumeMover mover(mesh, test::only(top));
-    EXPECT_EQ(mover.n_wall_nodes(), 16);
+    EXPECT_EQ(mover.wall_nodes().size(), 16U);
     const std::vector<Vec3> moved =
         mover.move(test::at_nodes(top, constant(top, Vec3(0, 0, -0.05))));
     for (Index node = 0; node < mesh.n_nodes(); ++node) {
@@ -318,7 +318,7 @@ TEST(MoveVolume, ASurfaceMeshMovesItsSurfaceOnly) {
   const VolumeMover mover(mesh, test::only(surface));
   EXPECT_EQ(mover.method(), VolumeMethod::none);
   EXPECT_EQ(name(mover.method()), "none");
-  EXPECT_EQ(mover.n_wall_nodes(), 5);
+  EXPECT_EQ(mover.wall_nodes().size(), 5U);
   const std::vector<Vec3> moved =
       mover.move(test::at_nodes(surface, constant(surface, Vec3::UnitZ())));
   for (Index node = 0; node < mesh.n_nodes(); ++node)
@@ -414,7 +414,7 @@ TEST(MoveVolume, SeveralSurfacesMoveAtOnce) {
   const std::vector<Surface> surfaces = {select_surface(mesh, {.groups = {"top"}}),
                                          select_surface(mesh, {.groups = {"middle"}})};
   const VolumeMover mover(mesh, surfaces);
-  EXPECT_EQ(mover.n_wall_nodes(), 32);
+  EXPECT_EQ(mover.wall_nodes().size(), 32U);
   const std::vector<std::vector<double>> heights = {std::vector<double>(25, 0.05),
                                                     std::vector<double>(25, -0.05)};
   const std::vector<Vec3> moved = mover.move(displace_nodes(surfaces, heights));
@@ -438,7 +438,7 @@ TEST(MoveVolume, TwoSurfacesAreLikeOneOfBoth) {
                                       select_surface(mesh, {.groups = {"outer"}})};
   const Surface together = select_surface(mesh, {.groups = {"surface", "outer"}});
   const VolumeMover mover(mesh, apart);
-  EXPECT_EQ(mover.n_wall_nodes(), 0);
+  EXPECT_EQ(mover.wall_nodes().size(), 0U);
   EXPECT_EQ(moved_nodes(apart), together.nodes);
   std::vector<Vec3> told;
   for (const Index node : together.nodes)

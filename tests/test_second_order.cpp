@@ -338,7 +338,7 @@ TEST(SecondOrder, ASphereInABoxFromGmsh) {
   std::vector<double> heights;
   for (const Vec3& x : ball.points) heights.push_back(0.02 * std::sin(9 * x.x() + 7 * x.y()));
   const VolumeMover mover(mesh, test::only(ball));
-  EXPECT_EQ(mover.n_wall_nodes(), 0);
+  EXPECT_EQ(mover.wall_nodes().size(), 0U);
   const std::vector<Vec3> moved = mover.move(displace_nodes(test::only(ball), {&heights, 1}));
   const MeshCheck check = check_mesh(mesh, moved);
   EXPECT_TRUE(check.valid());

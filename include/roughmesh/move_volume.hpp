@@ -42,9 +42,9 @@ class VolumeMover {
 
   VolumeMethod method() const;
 
-  /// Nodes of the surfaces that also lie on a face that is in none of them and stays: the rough
-  /// surface meets a wall there.
-  Index n_wall_nodes() const;
+  /// Nodes of the surfaces that also lie on a face that is in none of them and stays, ascending:
+  /// the rough surface meets a wall there.
+  const std::vector<Index>& wall_nodes() const;
 
   /// @param displacements  one vector per node of moved_nodes(surfaces), in its order
   /// @return               positions of all nodes of the mesh

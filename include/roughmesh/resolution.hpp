@@ -12,6 +12,9 @@
 
 namespace roughmesh {
 
+/// Mesh sizes that a correlation length needs at least: Loth et al. (2020).
+inline constexpr double sizes_per_length = 2.5;
+
 /// How well the linear interpolant on the mesh follows a field of unit rms height, and how large
 /// the heights may be. Formulas: docs/math.md, section "Resolution".
 struct Resolution {
