@@ -197,10 +197,11 @@ void check_seeds(const std::vector<Roughness>& surfaces) {
     for (std::size_t i = 0; i < j; ++i) {
       if (surfaces[i].seed != surfaces[j].seed) continue;
       if (same_field(surfaces[i], surfaces[j]) && can_be_shared(surfaces[j])) continue;
-      const std::string why = same_field(surfaces[i], surfaces[j])
-                                  ? fmt::format("--distance {} does not reach from one to the other",
-                                                name(*surfaces[j].distance))
-                                  : "different autocorrelation";
+      const std::string why =
+          same_field(surfaces[i], surfaces[j])
+              ? fmt::format("--distance {} does not reach from one to the other",
+                            name(*surfaces[j].distance))
+              : "different autocorrelation";
       throw InputError(fmt::format(
           "surfaces {} and {} have the same seed {}, but {}; give one of them another seed", i + 1,
           j + 1, surfaces[i].seed, why));

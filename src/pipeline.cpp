@@ -92,12 +92,30 @@ std::vector<std::string> cited_works(std::span<const FieldSampler> samplers,
   return works;
 }
 
-SqTarget expect(const Surface& surface, const SurfacePlan& plan, const Correlation& correlation) {
-  SqTarget target{expected_sq(surface, correlation, {.weights = plan.weights}), {}, std::nullopt};
+/// Covariance between the points of a surface that the sampler really has.
+std::function<double(Index, Index)> covariance_of(const FieldSampler& sampler,
+                                                  const SurfacePlan& plan, const FieldPlan& field) {
+  if (sampler.summary().factorization != Factorization::eigenvalue) return {};
+  const std::vector<Index> sampled = masters(field.partners);
+  std::vector<Index> position;
+  for (const Index point : plan.field_point)
+    position.push_back(static_cast<Index>(
+        std::lower_bound(sampled.begin(), sampled.end(), field.partners.master[point]) -
+        sampled.begin()));
+  return [&sampler, position = std::move(position)](Index i, Index j) {
+    return sampler.covariance(position[i], position[j]);
+  };
+}
+
+SqTarget expect(const Surface& surface, const SurfacePlan& plan, const Correlation& correlation,
+                const std::function<double(Index, Index)>& covariance) {
+  SqOptions options{.weights = plan.weights, .areas = {}, .covariance = covariance};
+  SqTarget target{expected_sq(surface, correlation, options), {}, std::nullopt};
   std::vector<double> areas = full_weight_areas(surface, plan.weights);
   const auto n_whole = std::count_if(areas.begin(), areas.end(), [](double a) { return a > 0; });
   if (n_whole == 0 || n_whole == surface.n_points()) return target;
-  target.unfaded = expected_sq(surface, correlation, {.weights = plan.weights, .areas = areas});
+  options.areas = areas;
+  target.unfaded = expected_sq(surface, correlation, options);
   target.unfaded_areas = std::move(areas);
   return target;
 }
@@ -207,8 +225,6 @@ class Run {
           timed(times().surface, [&] { return assess_resolution(surface, correlation); });
       detail::warn_of_surface(report_, surface, rough_.plans[s].request);
       detail::warn_of_scale(report_, mesh_, described, rough_.plans[s].request);
-      targets_.push_back(
-          timed(times().audit, [&] { return expect(surface, rough_.plans[s], correlation); }));
     }
   }
 
@@ -216,7 +232,8 @@ class Run {
     std::vector<Audit> audits;
     for (const FieldPlan& plan : rough_.fields) {
       samplers_.push_back(timed(times().field, [&] {
-        return FieldSampler(plan.correlation.among(masters(plan.partners)), field_options(options_));
+        return FieldSampler(plan.correlation.among(masters(plan.partners)),
+                            field_options(options_));
       }));
       audits.push_back(timed(times().audit, [&] { return samplers_.back().audit(); }));
     }
@@ -224,6 +241,11 @@ class Run {
       const std::size_t field = rough_.plans[s].field;
       report_.surfaces[s].field = samplers_[field].summary();
       report_.surfaces[s].audit = audits[field];
+      const SurfacePlan& plan = rough_.plans[s];
+      targets_.push_back(timed(times().audit, [&] {
+        return expect(rough_.surfaces[s], plan, detail::correlation_of(plan, rough_.fields),
+                      covariance_of(samplers_[field], plan, rough_.fields[field]));
+      }));
     }
     detail::warn_of_fields(report_);
     report_.citations = cited_works(samplers_, rough_.fields);

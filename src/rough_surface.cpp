@@ -71,8 +71,7 @@ struct ClassedEffect {
   Effect effect;
 };
 
-std::vector<ClassedEffect> effects(const RoughSurfaces& rough,
-                                   std::span<const std::size_t> members,
+std::vector<ClassedEffect> effects(const RoughSurfaces& rough, std::span<const std::size_t> members,
                                    const PeriodicPartners& partners) {
   std::vector<ClassedEffect> result;
   for (const std::size_t s : members) {
@@ -110,12 +109,14 @@ void refuse_broken_links(std::span<const ClassedEffect> effects, const PeriodicP
   for_each_moving_class(effects, [&](auto first, auto) {
     const std::string at = place(first->effect.place());
     if (partners.rotated[first->master] != 0)
-      throw InputError(fmt::format(
-          "the periodic link of the node at {} is no translation along an axis; {}", at, end_there));
+      throw InputError(
+          fmt::format("the periodic link of the node at {} is no translation along an axis; {}", at,
+                      end_there));
     if (partners.unpaired[first->master] != 0)
-      throw InputError(fmt::format("a periodic link joins the node at {} to one that is not on this "
-                                   "surface; choose both sides as one surface, or {}",
-                                   at, end_there));
+      throw InputError(
+          fmt::format("a periodic link joins the node at {} to one that is not on this "
+                      "surface; choose both sides as one surface, or {}",
+                      at, end_there));
     if (n_points[first->master] > 1 && !is_periodic(distance))
       throw InputError(
           fmt::format("a periodic link joins the node at {} to another that moves; take --distance "
@@ -151,8 +152,7 @@ bool moves_images(std::span<const ClassedEffect> effects, const PeriodicPartners
   std::vector<Index> n_points(partners.master.size(), 0);
   for (const Index master : partners.master) ++n_points[master];
   bool result = false;
-  for_each_moving_class(effects,
-                        [&](auto first, auto) { result |= n_points[first->master] > 1; });
+  for_each_moving_class(effects, [&](auto first, auto) { result |= n_points[first->master] > 1; });
   return result;
 }
 

@@ -33,6 +33,8 @@ struct CountedAreas {
 struct MaskedField {
   std::vector<double> weights;  ///< in [0, 1]
   CountedAreas areas;
+  std::function<double(Index, Index)> covariance;  ///< of the unmasked field; none: its correlation
+  std::vector<double> variances;                   ///< covariance(i, i)
 
   double share(std::size_t i) const { return areas.of_point[i] / areas.total; }
 };
@@ -94,17 +96,23 @@ struct Decorrelation {
   double mean_square = 0;
 };
 
+// Half the mean square difference of the masked field between two points (docs/math.md, eq. 44).
+double half_variogram(Index i, Index j, const MaskedField& field, const Correlation& correlation) {
+  const double a = field.weights[i], b = field.weights[j];
+  if (field.covariance)
+    return (a * a * field.variances[i] + b * b * field.variances[j]) / 2 -
+           a * b * field.covariance(i, j);
+  return (a - b) * (a - b) / 2 + (a * b > 0 ? a * b * (1 - correlation(i, j)) : 0);
+}
+
 Decorrelation decorrelation_from(std::size_t i, const Surface& surface, const MaskedField& field,
                                  const Correlation& correlation) {
   Decorrelation sum;
   for (std::size_t j = 0; j < surface.points.size(); ++j) {
     const double area = field.areas.of_point[j];
     if (area == 0) continue;
-    const double step = field.weights[i] - field.weights[j];
-    const double product = field.weights[i] * field.weights[j];
-    double lost = step * step / 2;
-    if (product > 0)
-      lost += product * (1 - correlation(static_cast<Index>(i), static_cast<Index>(j)));
+    const double lost =
+        half_variogram(static_cast<Index>(i), static_cast<Index>(j), field, correlation);
     sum.mean += area * lost;
     sum.mean_square += area * lost * lost;
   }
@@ -208,8 +216,12 @@ ExpectedSq expected_sq(const Surface& surface, const Correlation& correlation,
                        const SqOptions& options) {
   constexpr double large = 1e6;
   detail::require_points_of(surface, correlation);
-  const MaskedField field{field_weights(surface, options.weights),
-                          counted_areas(surface, options.areas)};
+  MaskedField field{field_weights(surface, options.weights),
+                    counted_areas(surface, options.areas),
+                    options.covariance,
+                    {}};
+  for (Index i = 0; field.covariance && i < surface.n_points(); ++i)
+    field.variances.push_back(field.covariance(i, i));
   const MeanSquareMoments moments = mean_square_moments(surface, field, correlation);
   if (!(moments.mean > 0)) return {};
   const double root = std::sqrt(moments.mean);

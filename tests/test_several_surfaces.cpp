@@ -187,3 +187,82 @@ TEST(PeriodicRun, NeedsAPeriod) {
   for (const RoughMesh& rough : run(mesh, options))
     EXPECT_EQ(rough.displacements[0], rough.displacements[64]);
 }
+
+// Along a closed curve a Gaussian of this length is indefinite: its negative eigenvalues are set to
+// zero, and Sq must be expected of what is left. The mean over 300 realizations has a standard
+// error of sq_expected_std / sqrt(300).
+TEST(Report, ExpectsTheSqOfTheFieldThatIsSampled) {
+  const Mesh mesh = test::polyline(test::circle_points(test::uneven_angles(60), 1), true);
+  RoughenOptions options;
+  options.surfaces[0].rms = rq;
+  options.surfaces[0].length = {3};
+  options.surfaces[0].distance = DistanceKind::curve;
+  options.realizations = 300;
+  const Report report = roughen(mesh, options, [](const RoughMesh&, Report&) {});
+  EXPECT_EQ(report.surfaces[0].field.factorization, Factorization::eigenvalue);
+  double mean = 0;
+  for (const RealizationReport& r : report.realizations) mean += r.surfaces[0].heights.sq / 300;
+  const SurfaceStatistics& s = report.realizations[0].surfaces[0];
+  EXPECT_NEAR(mean, s.sq_expected, 4 * s.sq_expected_std / std::sqrt(300.0));
+}
+
+// A box mask on one side of a period only would tear the images apart.
+TEST(PeriodicRun, MasksThatDifferBetweenImagesAreRefused) {
+  const Mesh mesh = test::strip(64, 2, 16);
+  RoughenOptions options = two_edges(2);
+  for (Roughness& surface : options.surfaces) {
+    surface.fixed.clear();
+    surface.mask = {BoxMask{.min = {-1, -2, -1}, .max = {8, 2, 1}, .fade = 1, .outside = false}};
+  }
+  EXPECT_NE(message_of([&] { run(mesh, options); }).find("its periodic image"), std::string::npos);
+  for (Roughness& surface : options.surfaces)
+    surface.mask = {BoxMask{.min = {4, -2, -1}, .max = {8, 2, 1}, .fade = 1, .outside = false}};
+  EXPECT_EQ(message_of([&] { run(mesh, options); }), "no error");
+}
+
+TEST(PeriodicRun, AFixedSideDoesNotExcuseItsImage) {
+  Mesh mesh = test::strip(64, 2, 16);
+  const Index left_lower = 0, left_upper = 2 * 65;
+  mesh.blocks.push_back(test::make_block(test::point_type, 9, {9}, {left_lower, left_upper}, 9001));
+  mesh.groups.insert(mesh.groups.begin(), {0, 9, "left"});
+  RoughenOptions options = two_edges(2);
+  for (Roughness& surface : options.surfaces) {
+    surface.fixed = {"left"};
+    surface.distance = DistanceKind::euclidean;
+  }
+  EXPECT_NE(message_of([&] { run(mesh, options); }).find("periodic link"), std::string::npos);
+}
+
+// The halves of an edge face each other across the period; in one job they are one field.
+TEST(PeriodicRun, ImagesMayBelongToDifferentSurfaces) {
+  Mesh mesh = test::strip(64, 2, 16);
+  ElementBlock right = mesh.blocks[0];
+  right.entity = 8;
+  right.physical_groups = {8};
+  right.nodes.erase(right.nodes.begin(), right.nodes.begin() + 64);
+  right.tags.erase(right.tags.begin(), right.tags.begin() + 32);
+  mesh.blocks[0].nodes.resize(64);
+  mesh.blocks[0].tags.resize(32);
+  mesh.blocks.push_back(right);
+  mesh.groups.insert(mesh.groups.begin() + 3, {1, 8, "lower right"});
+  RoughenOptions options;
+  options.surfaces = {edge("lower", 1), edge("lower right", 1)};
+  for (Roughness& surface : options.surfaces) surface.fixed.clear();
+  const RoughMesh rough = run(mesh, options).front();
+  EXPECT_EQ(rough.displacements[0], rough.displacements[64]);
+  EXPECT_GT(rough.displacements[0].norm(), 0);
+}
+
+TEST(SeveralSurfaces, WhatOneFixesNoOtherMoves) {
+  Mesh mesh = test::strip(64, 2, 16);
+  mesh.periodic_links.clear();
+  RoughenOptions options = two_edges(2);
+  options.surfaces[0].fixed.clear();
+  options.surfaces[1].group = {"ends"};
+  options.surfaces[1].fixed = {"lower"};
+  options.surfaces[1].flip = false;
+  const RoughMesh rough = run(mesh, options).front();
+  EXPECT_TRUE(rough.displacements[0].isZero(0));
+  EXPECT_TRUE(rough.displacements[64].isZero(0));
+  EXPECT_FALSE(rough.displacements[1].isZero(0));
+}

@@ -2,6 +2,7 @@
 // Height parameters of a rough surface, area-weighted, as ISO 25178-2 defines them.
 #pragma once
 
+#include <functional>
 #include <span>
 
 #include "roughmesh/correlation.hpp"
@@ -35,6 +36,9 @@ struct ExpectedSq {
 struct SqOptions {
   std::span<const double> weights = {};  ///< n mask weights of the field in [0, 1]; none: all 1
   std::span<const double> areas = {};    ///< n node areas, as for height_statistics
+  /// Covariance of the unmasked field at two points, called from several threads, where it is not
+  /// the correlation: of a sampler that had to clip eigenvalues. None: the correlation.
+  std::function<double(Index, Index)> covariance = {};
 };
 
 /// From rho alone (docs/math.md, eq. 19, 20 and 44): below 1 because Sq is taken about the mean of
