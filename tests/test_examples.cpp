@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What examples/ and docs/ show does what their words say.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -145,6 +146,24 @@ TEST_F(Examples, MaskedNodesStay) {
   EXPECT_LT(window, 1e-12);
   EXPECT_LT(south, 6 * 0.02 * 2e-4);
   EXPECT_GT(north, 0.02);
+}
+
+// Several surfaces and masks, on meshes that are made anew from their scripts.
+TEST_F(Examples, TheirReportsAreJobsThatGiveTheSameBytes) {
+  for (const auto& [job, report, mesh] : std::vector<std::array<std::string, 3>>{
+           {"line_edges.toml", "independent_", "independent_2.msh"},
+           {"line_edges_in_step.toml", "in_step_", "in_step_0.msh"},
+           {"masks.toml", "half_", "half_0.msh"}}) {
+    run(job);
+    const std::string bytes = test::read_bytes(folder / mesh);
+    std::filesystem::remove(folder / mesh);
+    std::filesystem::rename(folder / (report + ".report.json"), folder / "job.json");
+    const test::Outcome again =
+        test::run_in(folder, std::string(ROUGHMESH_APP) + " roughen --job job.json");
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_EQ(again.err.find("checksum"), std::string::npos) << again.err;
+    EXPECT_EQ(test::read_bytes(folder / mesh), bytes) << job;
+  }
 }
 
 TEST(JobsPage, ItsBlocksAreJobs) {
