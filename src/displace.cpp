@@ -160,8 +160,9 @@ std::vector<Vec3> displace_nodes(std::span<const Surface> surfaces,
     demands.clear();
     auto next = first;
     for (; next != entries.end() && next->group == first->group; ++next)
-      demands.push_back(
-          {surfaces[next->surface].normals[next->point], heights[next->surface][next->point]});
+      // A height of exactly 0 is a mask's: it leaves the node to the other surfaces.
+      if (const double height = heights[next->surface][next->point]; height != 0)
+        demands.push_back({surfaces[next->surface].normals[next->point], height});
     of_group[first->group] = smallest_displacement(demands);
     first = next;
   }

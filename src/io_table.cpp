@@ -44,6 +44,9 @@ std::vector<CorrelationPair> read_correlation_table(const std::filesystem::path&
   const detail::FileBytes file = detail::read_file(path);
   detail::Scanner scanner(file);
   scanner.set_section("table of r and rho");
+  // Spreadsheets mark their UTF-8 files so.
+  if (constexpr std::string_view mark = "\xef\xbb\xbf"; scanner.rest().starts_with(mark))
+    scanner.skip(mark.size());
   std::vector<CorrelationPair> pairs;
   while (!scanner.at_end()) {
     const std::size_t start = scanner.offset();

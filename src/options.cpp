@@ -187,15 +187,25 @@ void check_roughness(const Roughness& o) {
   Autocorrelation{autocorrelation_options(o)};
 }
 
+/// Distances over one body or curve do not reach from one surface to another.
+bool can_be_shared(const Roughness& o) {
+  return o.distance != DistanceKind::great_circle && o.distance != DistanceKind::curve;
+}
+
 /// Two fields drawn from the same random numbers would resemble each other in no useful way.
 void check_seeds(const std::vector<Roughness>& surfaces) {
   for (std::size_t j = 0; j < surfaces.size(); ++j)
-    for (std::size_t i = 0; i < j; ++i)
-      if (surfaces[i].seed == surfaces[j].seed && !same_field(surfaces[i], surfaces[j]))
-        throw InputError(
-            fmt::format("surfaces {} and {} have the same seed {} but different autocorrelation; "
-                        "give one of them another seed",
-                        i + 1, j + 1, surfaces[i].seed));
+    for (std::size_t i = 0; i < j; ++i) {
+      if (surfaces[i].seed != surfaces[j].seed) continue;
+      if (same_field(surfaces[i], surfaces[j]) && can_be_shared(surfaces[j])) continue;
+      const std::string why = same_field(surfaces[i], surfaces[j])
+                                  ? fmt::format("--distance {} does not reach from one to the other",
+                                                name(*surfaces[j].distance))
+                                  : "different autocorrelation";
+      throw InputError(fmt::format(
+          "surfaces {} and {} have the same seed {}, but {}; give one of them another seed", i + 1,
+          j + 1, surfaces[i].seed, why));
+    }
 }
 
 void check_surfaces(const std::vector<Roughness>& surfaces) {

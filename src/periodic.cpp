@@ -103,6 +103,13 @@ int axis_of(const Vec3& shift) {
   return length > 0 && rest.norm() <= tolerance * length ? static_cast<int>(axis) : -1;
 }
 
+/// A link that leads off the surface says nothing about the period of what is on it.
+bool joins_points(const SurfaceLink& link, const std::vector<Index>& point) {
+  return std::any_of(link.pairs.begin(), link.pairs.end(), [&](const Pair& pair) {
+    return point[pair.slave] >= 0 && point[pair.master] >= 0;
+  });
+}
+
 void set_period(const Mesh& mesh, const SurfaceLink& link, Vec3& period) {
   const int axis = link.shift ? axis_of(*link.shift) : -1;
   if (axis < 0) return;
@@ -222,7 +229,8 @@ void unite_links(const Mesh& mesh, const Surface& surface, detail::DisjointSets&
                  PeriodicPartners& partners) {
   const std::vector<Index> point = points_of_nodes(mesh, surface);
   const std::vector<SurfaceLink> links = links_of_surface(mesh, point);
-  for (const SurfaceLink& link : links) set_period(mesh, link, partners.period);
+  for (const SurfaceLink& link : links)
+    if (joins_points(link, point)) set_period(mesh, link, partners.period);
   for (const SurfaceLink& link : links) {
     const bool is_translation = link.shift && is_lattice_shift(*link.shift, partners.period);
     for (const Pair& pair : link.pairs) {

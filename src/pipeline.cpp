@@ -171,6 +171,7 @@ class Run {
     const VolumeMover mover = timed(times().volume, [&] {
       return VolumeMover(mesh_, rough_.surfaces, volume_method(options_));
     });
+    fixed_ = detail::fixed_among(rough_, mesh_, moved_nodes(rough_.surfaces));
     n_wall_nodes_ = detail::n_moving(rough_, mesh_, mover.wall_nodes());
     detail::warn_of_walls(report_, n_wall_nodes_);
     quality_before_ = timed(times().check, [&] { return min_quality(mesh_); });
@@ -215,7 +216,7 @@ class Run {
     std::vector<Audit> audits;
     for (const FieldPlan& plan : rough_.fields) {
       samplers_.push_back(timed(times().field, [&] {
-        return FieldSampler(plan.correlation.among(plan.masters), field_options(options_));
+        return FieldSampler(plan.correlation.among(masters(plan.partners)), field_options(options_));
       }));
       audits.push_back(timed(times().audit, [&] { return samplers_.back().audit(); }));
     }
@@ -230,11 +231,12 @@ class Run {
 
   /// Heights of every surface for one realization.
   std::vector<std::vector<double>> draw(std::uint64_t realization) const {
-    std::vector<std::vector<double>> samples, heights;
+    std::vector<std::vector<double>> fields, heights;
     for (std::size_t f = 0; f < samplers_.size(); ++f)
-      samples.push_back(samplers_[f].heights(seed_of(f), realization));
+      fields.push_back(
+          expand(rough_.fields[f].partners, samplers_[f].heights(seed_of(f), realization)));
     for (const SurfacePlan& plan : rough_.plans)
-      heights.push_back(detail::heights_of(plan, rough_.fields[plan.field], samples[plan.field]));
+      heights.push_back(detail::heights_of(plan, fields[plan.field]));
     return heights;
   }
 
@@ -244,10 +246,17 @@ class Run {
         ->request.seed;
   }
 
+  /// What one surface fixes, no other moves.
+  std::vector<Vec3> displacements_of(const std::vector<std::vector<double>>& heights) const {
+    std::vector<Vec3> displacements = displace_nodes(rough_.surfaces, heights);
+    for (const std::size_t i : fixed_) displacements[i] = Vec3::Zero();
+    return displacements;
+  }
+
   void realize(const VolumeMover& mover, RoughMesh& rough) {
     const auto heights = timed(times().field, [&] { return draw(rough.realization); });
     const std::vector<Vec3> displacements =
-        timed(times().displace, [&] { return displace_nodes(rough_.surfaces, heights); });
+        timed(times().displace, [&] { return displacements_of(heights); });
     rough.mesh.nodes = timed(times().volume, [&] { return mover.move(displacements); });
     rough.check = timed(times().check, [&] { return check_mesh(mesh_, rough.mesh.nodes); });
     refuse_invalid(rough, remedy(rough_.fields, n_wall_nodes_), report_);
@@ -278,6 +287,7 @@ class Run {
   RoughSurfaces rough_;
   std::vector<SqTarget> targets_;       // one for each surface
   std::vector<FieldSampler> samplers_;  // one for each field
+  std::vector<std::size_t> fixed_;      // positions among the moved nodes
   Index n_wall_nodes_ = 0;              // that move
   double quality_before_ = 0;
 };

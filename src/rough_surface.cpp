@@ -55,39 +55,89 @@ bool is_periodic(DistanceKind kind) {
   return kind == DistanceKind::periodic || kind == DistanceKind::minimum_image;
 }
 
-/// Links join nodes of a surface; unless the distance knows of them, or they stay, the two sides
-/// would come apart.
-void refuse_broken_links(const Surface& surface, const SurfacePlan& plan,
-                         const PeriodicPartners& partners) {
-  constexpr const char* remedy = "let the roughness end there with --fade WIDTH:GROUP or --fixed";
-  for (Index i = 0; i < surface.n_points(); ++i) {
-    if (plan.weights[i] == 0) continue;
-    const std::string at = place(surface.points[i]);
-    if (partners.rotated[i] != 0)
-      throw InputError(fmt::format(
-          "the periodic link of the node at {} is no translation along an axis; {}", at, remedy));
-    if (partners.unpaired[i] != 0)
-      throw InputError(fmt::format(
-          "a periodic link joins the node at {} to one that stays; choose both sides, or {}", at,
-          remedy));
-    if (partners.master[i] != i && !is_periodic(*plan.request.distance))
-      throw InputError(
-          fmt::format("a periodic link joins the node at {} to another that moves; take --distance "
-                      "periodic, or {}",
-                      at, remedy));
+/// What the roughness of a surface does at a point, apart from the field.
+struct Effect {
+  const Surface* surface = nullptr;
+  Index point = 0;
+  double factor = 0;  ///< weight times Rq
+
+  const Vec3& place() const { return surface->points[point]; }
+  Vec3 per_unit() const { return factor * surface->normals[point]; }
+};
+
+/// Effects at the points of a field, sorted by the class of periodic partners that they are in.
+struct ClassedEffect {
+  Index master;
+  Effect effect;
+};
+
+std::vector<ClassedEffect> effects(const RoughSurfaces& rough,
+                                   std::span<const std::size_t> members,
+                                   const PeriodicPartners& partners) {
+  std::vector<ClassedEffect> result;
+  for (const std::size_t s : members) {
+    const SurfacePlan& plan = rough.plans[s];
+    for (Index i = 0; i < rough.surfaces[s].n_points(); ++i)
+      result.push_back({partners.master[plan.field_point[i]],
+                        {&rough.surfaces[s], i, plan.weights[i] * plan.request.rms}});
+  }
+  std::stable_sort(result.begin(), result.end(),
+                   [](const auto& a, const auto& b) { return a.master < b.master; });
+  return result;
+}
+
+/// Calls visit(first, end) for the effects of each class of points that moves at all.
+template <class Visit>
+void for_each_moving_class(std::span<const ClassedEffect> effects, Visit&& visit) {
+  for (auto first = effects.begin(); first != effects.end();) {
+    const auto end = std::find_if(first, effects.end(), [&](const ClassedEffect& each) {
+      return each.master != first->master;
+    });
+    if (std::any_of(first, end, [](const ClassedEffect& e) { return e.effect.factor > 0; }))
+      visit(first, end);
+    first = end;
   }
 }
 
-void fill_in_distance(Roughness& request, const Vec3& period) {
-  const bool has_period = !period.isZero(0);
-  if (!request.distance)
-    request.distance = has_period ? DistanceKind::periodic : DistanceKind::euclidean;
-  if (!is_periodic(*request.distance)) return;
-  if (!has_period)
-    throw InputError(
-        fmt::format("--distance: {}; needs --period LX,LY,LZ, since the mesh has no periodic links",
-                    name(*request.distance)));
-  request.period = {period.x(), period.y(), period.z()};
+constexpr const char* end_there = "let the roughness end there with --fade WIDTH:GROUP or --fixed";
+
+/// Links join nodes of a surface; unless the distance knows of them, or they stay, the two sides
+/// would come apart.
+void refuse_broken_links(std::span<const ClassedEffect> effects, const PeriodicPartners& partners,
+                         DistanceKind distance) {
+  std::vector<Index> n_points(partners.master.size(), 0);
+  for (const Index master : partners.master) ++n_points[master];
+  for_each_moving_class(effects, [&](auto first, auto) {
+    const std::string at = place(first->effect.place());
+    if (partners.rotated[first->master] != 0)
+      throw InputError(fmt::format(
+          "the periodic link of the node at {} is no translation along an axis; {}", at, end_there));
+    if (partners.unpaired[first->master] != 0)
+      throw InputError(fmt::format("a periodic link joins the node at {} to one that is not on this "
+                                   "surface; choose both sides as one surface, or {}",
+                                   at, end_there));
+    if (n_points[first->master] > 1 && !is_periodic(distance))
+      throw InputError(
+          fmt::format("a periodic link joins the node at {} to another that moves; take --distance "
+                      "periodic, or {}",
+                      at, end_there));
+  });
+}
+
+/// Images carry one height, so that masks, Rq and direction must be equal for them to stay images.
+void refuse_unequal_images(std::span<const ClassedEffect> effects) {
+  constexpr double round_off = 1e-9;
+  for_each_moving_class(effects, [&](auto first, auto end) {
+    const Effect& one = first->effect;
+    for (auto other = first + 1; other != end; ++other) {
+      const double difference = (other->effect.per_unit() - one.per_unit()).norm();
+      if (difference > round_off * std::max(one.factor, other->effect.factor))
+        throw InputError(fmt::format(
+            "the roughness at {} and at its periodic image {} differ (masks, --rms or --flip); "
+            "make them equal on both sides, for example by a fade or mask for each",
+            place(one.place()), place(other->effect.place())));
+    }
+  });
 }
 
 PeriodicPartners partners_of(const Mesh& mesh, const Surface& surface, const Roughness& request) {
@@ -96,31 +146,48 @@ PeriodicPartners partners_of(const Mesh& mesh, const Surface& surface, const Rou
   return periodic_partners(mesh, surface, Vec3(p[0], p[1], p[2]));
 }
 
-FieldPlan plan_field(Correlation correlation, const PeriodicPartners& partners) {
-  FieldPlan plan{std::move(correlation), masters(partners), {}};
-  std::vector<Index> position(partners.master.size(), -1);
-  for (std::size_t i = 0; i < plan.masters.size(); ++i)
-    position[plan.masters[i]] = static_cast<Index>(i);
-  for (const Index master : partners.master) plan.sampled_at.push_back(position[master]);
-  return plan;
+/// Do linked points move, so that the field has to be periodic?
+bool moves_images(std::span<const ClassedEffect> effects, const PeriodicPartners& partners) {
+  std::vector<Index> n_points(partners.master.size(), 0);
+  for (const Index master : partners.master) ++n_points[master];
+  bool result = false;
+  for_each_moving_class(effects,
+                        [&](auto first, auto) { result |= n_points[first->master] > 1; });
+  return result;
+}
+
+void fill_in_distance(Roughness& request, const PeriodicPartners& linked, bool moves_images) {
+  const bool has_period = !linked.period.isZero(0);
+  if (!request.distance)
+    request.distance =
+        has_period && moves_images ? DistanceKind::periodic : DistanceKind::euclidean;
+  if (!is_periodic(*request.distance)) return;
+  if (!has_period)
+    throw InputError(
+        fmt::format("--distance: {}; needs --period LX,LY,LZ, since the mesh has no periodic links",
+                    name(*request.distance)));
+  request.period = {linked.period.x(), linked.period.y(), linked.period.z()};
 }
 
 /// Every point for itself.
-PeriodicPartners no_partners(Index n_points) {
+PeriodicPartners no_partners(const Surface& surface) {
   PeriodicPartners partners;
-  partners.master.resize(static_cast<std::size_t>(n_points));
+  partners.master.resize(surface.points.size());
   std::iota(partners.master.begin(), partners.master.end(), Index{0});
   return partners;
 }
 
-/// One surface of a field whose points are those of `whole`.
-void join_field(const Mesh& mesh, const Surface& whole, const Vec3& period, Surface& surface,
-                SurfacePlan& plan) {
-  fill_in_distance(plan.request, period);
-  plan.field_point = points_in(mesh, surface, whole);
-  const PeriodicPartners partners = partners_of(mesh, surface, plan.request);
-  refuse_broken_links(surface, plan, partners);
-  if (is_periodic(*plan.request.distance)) surface = with_partner_normals(surface, partners);
+/// Points that have images get the normal that they have in common, on their own side.
+void take_shared_normals(const Surface& whole, const PeriodicPartners& partners,
+                         const SurfacePlan& plan, Surface& surface) {
+  const Surface shared = with_partner_normals(whole, partners);
+  for (Index i = 0; i < surface.n_points(); ++i) {
+    const Index point = plan.field_point[i];
+    const Vec3& own = whole.normals[point];
+    const Vec3& common = shared.normals[point];
+    if (own == common) continue;
+    surface.normals[i] = surface.normals[i].dot(own) < 0 ? Vec3(-common) : common;
+  }
 }
 
 FieldPlan prepare_field(const Mesh& mesh, RoughSurfaces& rough,
@@ -128,12 +195,34 @@ FieldPlan prepare_field(const Mesh& mesh, RoughSurfaces& rough,
   const std::size_t first = members.front();
   const Surface whole =
       members.size() == 1 ? rough.surfaces[first] : joined(mesh, rough.plans, members);
-  const PeriodicPartners partners = partners_of(mesh, whole, rough.plans[first].request);
-  for (const std::size_t member : members)
-    join_field(mesh, whole, partners.period, rough.surfaces[member], rough.plans[member]);
+  for (const std::size_t s : members)
+    rough.plans[s].field_point = points_in(mesh, rough.surfaces[s], whole);
+
+  const PeriodicPartners linked = partners_of(mesh, whole, rough.plans[first].request);
+  const bool images_move = moves_images(effects(rough, members, linked), linked);
+  for (const std::size_t s : members) fill_in_distance(rough.plans[s].request, linked, images_move);
   const Roughness& request = rough.plans[first].request;
-  return plan_field(field_model(request, whole),
-                    is_periodic(*request.distance) ? partners : no_partners(whole.n_points()));
+  if (!is_periodic(*request.distance)) {
+    refuse_broken_links(effects(rough, members, linked), linked, *request.distance);
+    return {field_model(request, whole), no_partners(whole)};
+  }
+  // By links and positions: a file need not list all of its links, and a report names the period.
+  PeriodicPartners partners = partners_of(mesh, whole, request);
+  for (const std::size_t s : members)
+    take_shared_normals(whole, partners, rough.plans[s], rough.surfaces[s]);
+  const std::vector<ClassedEffect> classed = effects(rough, members, partners);
+  refuse_broken_links(classed, partners, *request.distance);
+  refuse_unequal_images(classed);
+  return {field_model(request, whole), std::move(partners)};
+}
+
+SurfacePlan plan_surface(const Mesh& mesh, const Surface& surface, const Roughness& request) {
+  SurfacePlan plan;
+  plan.request = request;
+  plan.weights = mask_weights(mesh, surface, mask_options(request));
+  plan.free = request.fixed.empty() ? std::vector<double>(plan.weights.size(), 1.0)
+                                    : mask_weights(mesh, surface, {.fixed = request.fixed});
+  return plan;
 }
 
 }  // namespace
@@ -142,8 +231,7 @@ RoughSurfaces prepare_surfaces(const Mesh& mesh, std::span<const Roughness> requ
   RoughSurfaces rough;
   for (const Roughness& request : requests) {
     rough.surfaces.push_back(select_surface(mesh, surface_options(request)));
-    rough.plans.push_back(
-        {request, mask_weights(mesh, rough.surfaces.back(), mask_options(request)), 0, {}});
+    rough.plans.push_back(plan_surface(mesh, rough.surfaces.back(), request));
   }
   for (const std::vector<std::size_t>& members : share_fields(requests)) {
     for (const std::size_t member : members) rough.plans[member].field = rough.fields.size();
@@ -166,13 +254,24 @@ Index n_moving(const RoughSurfaces& rough, const Mesh& mesh, std::span<const Ind
       std::count_if(nodes.begin(), nodes.end(), [&](Index node) { return moves[node]; }));
 }
 
-std::vector<double> heights_of(const SurfacePlan& surface, const FieldPlan& field,
-                               std::span<const double> samples) {
+std::vector<double> heights_of(const SurfacePlan& surface, std::span<const double> field_heights) {
   std::vector<double> heights(surface.weights.size());
   for (std::size_t i = 0; i < heights.size(); ++i)
-    heights[i] = surface.weights[i] * surface.request.rms *
-                 samples[field.sampled_at[surface.field_point[i]]];
+    heights[i] = surface.weights[i] * surface.request.rms * field_heights[surface.field_point[i]];
   return heights;
+}
+
+std::vector<std::size_t> fixed_among(const RoughSurfaces& rough, const Mesh& mesh,
+                                     std::span<const Index> moved) {
+  std::vector<bool> is_fixed(mesh.nodes.size(), false);
+  for (std::size_t s = 0; s < rough.surfaces.size(); ++s)
+    for (std::size_t i = 0; i < rough.surfaces[s].nodes.size(); ++i)
+      if (rough.plans[s].free[rough.surfaces[s].point_of_node[i]] == 0)
+        is_fixed[rough.surfaces[s].nodes[i]] = true;
+  std::vector<std::size_t> positions;
+  for (std::size_t i = 0; i < moved.size(); ++i)
+    if (is_fixed[moved[i]]) positions.push_back(i);
+  return positions;
 }
 
 }  // namespace roughmesh::detail

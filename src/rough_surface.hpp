@@ -21,6 +21,7 @@ namespace roughmesh::detail {
 struct SurfacePlan {
   Roughness request;               ///< as used: distance and period filled in
   std::vector<double> weights;     ///< n_points, from the masks
+  std::vector<double> free;        ///< n_points: 0 where `fixed` alone holds a point, else 1
   std::size_t field = 0;           ///< position among the fields
   std::vector<Index> field_point;  ///< n_points positions among the points of the field
 };
@@ -28,9 +29,8 @@ struct SurfacePlan {
 /// A field, and where it is known. Surfaces with the same_field() are parts of one: what they have
 /// in common is equal on both, and what comes close is correlated.
 struct FieldPlan {
-  Correlation correlation;        ///< between the points of all its surfaces together
-  std::vector<Index> masters;     ///< points that carry heights; all of them without periodic links
-  std::vector<Index> sampled_at;  ///< for each point, the position of its master among `masters`
+  Correlation correlation;    ///< between the points of all its surfaces together
+  PeriodicPartners partners;  ///< among those points; every point for itself unless periodic
 };
 
 struct RoughSurfaces {
@@ -50,9 +50,12 @@ Correlation correlation_of(const SurfacePlan& surface, std::span<const FieldPlan
 /// How many of these nodes of the mesh the roughness moves: of weight above 0 on some surface.
 Index n_moving(const RoughSurfaces& rough, const Mesh& mesh, std::span<const Index> nodes);
 
-/// Heights z_i = m_i Rq d_i of the points of one surface, from the samples at its field's masters
-/// (docs/math.md, eq. 3 and 43).
-std::vector<double> heights_of(const SurfacePlan& surface, const FieldPlan& field,
-                               std::span<const double> samples);
+/// Heights z_i = m_i Rq d_i of the points of one surface (docs/math.md, eq. 3 and 43).
+/// @param field_heights  d at the points of its field
+std::vector<double> heights_of(const SurfacePlan& surface, std::span<const double> field_heights);
+
+/// Positions in `moved`, ascending nodes of the mesh, of those that a surface holds by `fixed`.
+std::vector<std::size_t> fixed_among(const RoughSurfaces& rough, const Mesh& mesh,
+                                     std::span<const Index> moved);
 
 }  // namespace roughmesh::detail

@@ -214,7 +214,7 @@ TEST_F(CommandLine, SaysWhatCannotBeDone) {
   std::filesystem::create_directory(folder / "folder.step");
   const std::string job = " -o a.msh --rms 0.02 --length 0.8 ";
   for (const auto& [input, arguments, reason] : std::vector<std::array<std::string, 3>>{
-           {"sphere.msh", "--mesh-size 0.1", "is a mesh already"},
+           {"sphere.msh", "--mesh-size 0.1", "is a mesh"},
            {"sphere.msh", "--mesh-size 0", "--mesh-size"},
            {"sphere.msh", "--ascii --binary", "--ascii"},
            {"sphere.msh", "--fade 1:nothing", "'nothing'"},

@@ -19,7 +19,8 @@ std::vector<Index> moved_nodes(std::span<const Surface> surfaces);
 
 /// Displacements of the nodes of surfaces of one mesh. A node of one surface moves by eq. 3 of
 /// docs/math.md, one where several meet by the smallest vector with the height of each along its
-/// normal, in the sense of least squares (eq. 36). Nodes at one point of a surface move together.
+/// normal, in the sense of least squares (eq. 36); a height of exactly 0, as a mask makes it, leaves
+/// the node to the other surfaces. Nodes at one point of a surface move together.
 /// @param heights  for each surface one number per point, in the unit of the mesh
 /// @return         one vector per node of moved_nodes(surfaces), in its order; none is longer than
 ///                 2 sqrt(k) times the largest height of the k surfaces that meet there
