@@ -183,9 +183,10 @@ std::string list_of(const std::vector<std::string>& names) {
 Mesh read_input(const RoughenOptions& options) {
   if (!is_geometry(options.input)) {
     if (options.mesh_size)
-      throw InputError(fmt::format("--mesh-size: {:g}; {} is a mesh, whose nodes move and whose size "
-                                   "stays; leave it out",
-                                   *options.mesh_size, options.input));
+      throw InputError(
+          fmt::format("--mesh-size: {:g}; {} is a mesh, whose nodes move and whose size "
+                      "stays; leave it out",
+                      *options.mesh_size, options.input));
     return read_mesh(options.input);
   }
   return mesh_geometry(options.input, geometry_options(options));
