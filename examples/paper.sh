@@ -20,11 +20,6 @@ Mesh.MeshSizeMax = $1;
 GEO
 }
 
-# Prints what to roughen for a geometry script: a mesh of it.
-input_of() {
-  gmsh -2 -format msh41 -v 1 "$1" -o "${1%.geo}.msh" >&2 && echo "${1%.geo}.msh"
-}
-
 # usage: roughen INPUT NAME RMS LENGTH; the same heights as .msh, which solvers read, and as .vtu
 roughen() {
   local extension
@@ -37,10 +32,8 @@ roughen() {
 # usage: sphere NAME RMS LENGTH SIZE, each over the radius
 sphere() {
   echo "sphere $1: Rq/r = $2, l/r = $3, h/r = $4"
-  local input
   sphere_script "$4" >"$folder/$1.geo"
-  input=$(input_of "$folder/$1.geo")
-  roughen "$input" "$1" "$2" "$3"
+  roughen "$folder/$1.geo" "$1" "$2" "$3"
   python3 "$tables" heights "$folder/$1" sphere
 }
 

@@ -44,10 +44,10 @@ void write(const std::filesystem::path& path, std::string_view text) {
 }
 
 GmshOutcome run(const ScratchFolder& folder, std::vector<std::string> files,
-                const GeometryOptions& options) {
+                const GeometryOptions& options, const std::filesystem::path& run_in = {}) {
   std::vector<std::string> arguments = {"-", "-nt", "1", "-v", "3"};
   arguments.insert(arguments.begin() + 1, files.begin(), files.end());
-  return detail::run_gmsh(folder, {options.gmsh, std::move(arguments), options.timeout});
+  return detail::run_gmsh(folder, {options.gmsh, std::move(arguments), options.timeout, run_in});
 }
 
 [[noreturn]] void fail_empty(const std::filesystem::path& path) {
@@ -203,13 +203,17 @@ void check_script_outcome(const GmshOutcome& outcome, const std::filesystem::pat
 Mesh mesh_script_file(const FileBytes& file, const GeometryOptions& options) {
   if (!options.trust_scripts) check_script(file);
   const ScratchFolder folder;
-  std::string input = "input.geo";
-  if (options.trust_scripts)  // in its own place, so that what it includes is found
-    input = std::filesystem::absolute(file.path).string();
-  else
-    write(folder / input, file.view());
+  std::filesystem::path input = folder / "input.geo";
+  std::filesystem::path run_in = folder.path();
+  if (options.trust_scripts) {  // in its own place, so that files and programs beside it are found
+    input = std::filesystem::absolute(file.path);
+    run_in = input.parent_path();
+  } else {
+    write(input, file.view());
+  }
   write(folder / "driver.geo", detail::script_driver(detail::makes_mesh(file.view()), options));
-  const GmshOutcome outcome = run(folder, {input, "driver.geo"}, options);
+  const std::string driver = (folder / "driver.geo").string();
+  const GmshOutcome outcome = run(folder, {input.string(), driver}, options, run_in);
   check_script_outcome(outcome, file.path, std::filesystem::exists(folder / "mesh.msh"));
   return read_result(folder, file.path);
 }

@@ -17,6 +17,9 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <spawn.h>
+#ifdef __linux__
+#include <sys/personality.h>
+#endif
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -121,6 +124,32 @@ class Preparation {
   posix_spawnattr_t attributes_{};
 };
 
+// Children that start while it lives have their memory at the same addresses each time: HXT orders
+// points by address (seen in gmsh 4.8.4), so that elsewhere equal inputs give different meshes. A
+// system that forbids it leaves the addresses random.
+class FixedAddresses {
+ public:
+#ifdef __linux__
+  FixedAddresses() : before_(::personality(query)) {
+    if (before_ != -1) ::personality(static_cast<unsigned long>(before_) | ADDR_NO_RANDOMIZE);
+  }
+  ~FixedAddresses() {
+    if (before_ != -1) ::personality(static_cast<unsigned long>(before_));
+  }
+
+ private:
+  static constexpr unsigned long query = 0xffffffff;
+  int before_;  // of this thread
+#else
+  FixedAddresses() = default;
+  ~FixedAddresses() = default;
+#endif
+
+ public:
+  FixedAddresses(const FixedAddresses&) = delete;
+  FixedAddresses& operator=(const FixedAddresses&) = delete;
+};
+
 // A path with a slash is meant from the caller's folder, not from the child's.
 std::string from_here(const std::string& program) {
   if (program.find('/') == std::string::npos) return program;
@@ -140,7 +169,8 @@ pid_t start(const ScratchFolder& folder, const GmshCall& call, int output) {
   for (const int signal_number : {SIGINT, SIGTERM, SIGHUP}) ::sigaddset(&interrupts, signal_number);
   ::pthread_sigmask(SIG_BLOCK, &interrupts, &before);
   pid_t child = 0;
-  const Preparation preparation(folder.path(), output, before);
+  const Preparation preparation(call.folder.empty() ? folder.path() : call.folder, output, before);
+  const FixedAddresses fixed_addresses;
   const int error = ::posix_spawnp(&child, argv[0], preparation.actions(), preparation.attributes(),
                                    argv.data(), envp.data());
   if (error == 0) folder.set_child(child);

@@ -3,6 +3,7 @@
 // from a file, and would bring its licence (docs/geometry.md).
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct GmshCall {
   std::string program = "gmsh";             ///< a name that is looked for in PATH, or a path
   std::vector<std::string> arguments = {};  ///< given as they are: no shell sees them
   double timeout = 600;                     ///< seconds of wall-clock time, > 0
+  std::filesystem::path folder = {};        ///< to run in; empty: the scratch folder
 };
 
 struct GmshOutcome {
@@ -23,8 +25,8 @@ struct GmshOutcome {
   std::string output;  ///< stdout and stderr as they came, the first megabyte, without colours
 };
 
-/// Runs in `folder`, with no input, an environment of its own in which that folder is the home (so
-/// that no option file of the user is read), and all output kept. The child and its children are
+/// Runs with no input, an environment of its own in which `folder` is the home (so that no option
+/// file of the user is read), and all output kept. The child and its children are
 /// killed at the time limit and on an interrupt (ScratchFolder).
 ///
 /// @throws InputError      no such program; the time is over

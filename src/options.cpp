@@ -15,6 +15,7 @@
 
 #include "roughmesh/resolution.hpp"
 
+#include "file_formats.hpp"
 #include "json_numbers.hpp"
 #include "options_json.hpp"
 
@@ -350,7 +351,7 @@ GeometryOptions geometry_options(const RoughenOptions& o) {
   const Roughness& first = o.surfaces.front();
   const bool has_length = !first.length.empty() || first.rolloff || !first.table.empty();
   // A script knows its own sizes.
-  const bool is_script = std::filesystem::path(o.input).extension() == ".geo";
+  const bool is_script = detail::lower_extension(o.input) == ".geo";
   if (!o.mesh_size && !is_script && !has_length)
     throw InputError(
         "--mesh-size: missing; CAD files need it, or --length, of which it is 1 / 2.5");

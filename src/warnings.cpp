@@ -89,14 +89,17 @@ void warn_of_scale(Report& report, const Mesh& mesh, const SurfaceReport& surfac
   const double size = surface.dimension == 1 ? surface.area : std::sqrt(surface.area);
   const double length = surface.lengths.one_over_e;
   if (length < 1e-2 * h)
-    warn(report, surface.groups,
-         fmt::format("correlation length {:g} is {:.1e} of the mesh size {:.3g}; check the unit",
-                     length, length / h, h));
+    warn(
+        report, surface.groups,
+        fmt::format("the 1/e distance of the correlation, {:g}, is {:.1e} of the mesh size {:.3g}; "
+                    "check the unit",
+                    length, length / h, h));
   if (length > size)
     warn(report, surface.groups,
-         fmt::format("correlation length {:g} is larger than the surface (its size is {:.3g}): it "
-                     "moves nearly as a whole; check the unit",
-                     length, size));
+         fmt::format(
+             "the 1/e distance of the correlation, {:g}, is larger than the surface (its size "
+             "is {:.3g}): it moves nearly as a whole; check the unit",
+             length, size));
 }
 
 void warn_of_fields(Report& report) {

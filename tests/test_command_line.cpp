@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The command as users meet it: files, exit codes, one line per failure, nothing half-written.
+#include <array>
 #include <csignal>
 #include <regex>
 #include <string>
@@ -203,6 +204,32 @@ TEST_F(CommandLine, WrongUsageIsCodeTwo) {
         "roughen ball.msh -o a.msh --rms 0.01 --length 0.3",
         "roughen . -o a.msh --rms 1 --length 1"})
     expect_failure(run(arguments), 2, arguments);
+}
+
+// Options that would do nothing, values of the wrong kind, files that are not what they are called.
+TEST_F(CommandLine, SaysWhatCannotBeDone) {
+  const std::string script = "SystemCall \"touch executed\";\nPoint(1) = {0, 0, 0};\n";
+  test::write_bytes(folder / "script.geo", script);
+  test::write_bytes(folder / "SCRIPT.GEO", script);
+  std::filesystem::create_directory(folder / "folder.step");
+  const std::string job = " -o a.msh --rms 0.02 --length 0.8 ";
+  for (const auto& [input, arguments, reason] : std::vector<std::array<std::string, 3>>{
+           {"sphere.msh", "--mesh-size 0.1", "is a mesh"},
+           {"sphere.msh", "--mesh-size 0", "--mesh-size"},
+           {"sphere.msh", "--ascii --binary", "--ascii"},
+           {"sphere.msh", "--fade 1:nothing", "'nothing'"},
+           {"sphere.msh", "--distance curve", "needs lines"},
+           {"sphere.msh", "--period 1,2", "--period: 2 numbers"},
+           {"sphere.msh", "--acf table --table missing.txt", "missing.txt"},
+           {"folder.step", "", "is a directory"},
+           {"script.geo", "", "script.geo:1: SystemCall"},
+           {"SCRIPT.GEO", "", "SCRIPT.GEO:1: SystemCall"},
+           {"script.geo", "--trust-scripts --gmsh /nonexistent", "/nonexistent: not found"}}) {
+    const Outcome outcome = run("roughen " + input + job + arguments);
+    expect_failure(outcome, 2, input + " " + arguments);
+    EXPECT_NE(outcome.err.find(reason), std::string::npos) << outcome.err;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "executed"));
 }
 
 TEST_F(CommandLine, AFileThatIsNoMeshIsCodeThree) {
