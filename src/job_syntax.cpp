@@ -33,6 +33,7 @@ class TomlScan {
   TomlScan(std::string_view text, const std::string& source) : text_(text), source_(source) {}
 
   void run() {
+    if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;  // the mark of UTF-8
     while (at_ < text_.size()) step();
   }
 
@@ -45,6 +46,7 @@ class TomlScan {
     const char c = here();
     if (c == '"' || c == '\'') return skip_string(c);
     if (c == '#') return skip_to_line_end();
+    require_ascii();
     if (c == '[' && in_key_ && depth_ == 0) check_header();
     if (c == '[' || c == '{') ++depth_;
     if (c == ']' || c == '}') --depth_;
@@ -63,7 +65,7 @@ class TomlScan {
     at_ += is_long ? 3 : 1;
     for (; at_ < text_.size(); ++at_) {
       if (here() == '\\' && quote == '"')
-        ++at_;
+        skip_escape();
       else if (here() == '\n' && !is_long)
         return;  // an error, which toml++ tells
       else if (here() == quote && (!is_long || (here(1) == quote && here(2) == quote)))
@@ -71,6 +73,26 @@ class TomlScan {
     }
     // A long string may end with quotes of its own, up to two before the three.
     for (int n = 0; n < (is_long ? 5 : 1) && here() == quote; ++n) ++at_;
+  }
+
+  // Up to the last sign of an escape sequence: the second one, or the end of the space that a
+  // backslash at the end of a line takes away.
+  void skip_escape() {
+    ++at_;
+    const std::size_t next = text_.find_first_not_of(" \t\r\n", at_);
+    if (next == at_ || next == text_.npos) return;
+    at_ = next;
+    require_ascii();
+    --at_;
+  }
+
+  // Where toml++ 3.3 looks for space, some letters beyond ASCII lead it astray.
+  void require_ascii() const {
+    if (static_cast<unsigned char>(here()) < 0x80) return;
+    throw FormatError(fmt::format(
+        "{}:{}: not TOML: a sign beyond ASCII, perhaps a no-break space, where a key, a number or "
+        "a space is expected; write texts between quotes",
+        source_, line_at(text_, at_)));
   }
 
   // toml++ 3.3 takes for granted that a key follows.

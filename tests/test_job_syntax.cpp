@@ -64,12 +64,23 @@ TEST(JobSyntax, BracketsAndDotsInTextsAndCommentsAreNoNesting) {
 }
 
 TEST(JobSyntax, ATableWithoutANameIsRefused) {
-  for (const std::string text : {"[[#a]]\n", "[#]\n", "[\n", "[[[a]]]\n", "rms = 1\n [ \t=]\n",
-                                 "[[\xc3\xa9]]", "\xef\xbb\xbf[#]\n"})
+  for (const std::string text :
+       {"[[#a]]\n", "[#]\n", "[\n", "[[[a]]]\n", "rms = 1\n [ \t=]\n", "\xef\xbb\xbf[#]\n"})
     EXPECT_NE(message_of<FormatError>(text).find("table without a name"), std::string::npos)
         << text;
   for (const std::string text : {"[]", "[[]]", "[", "[[", "[a", "[ ", "[[ ]"})
     EXPECT_FALSE(message_of<FormatError>(text).empty()) << text;
+}
+
+TEST(JobSyntax, SignsBeyondAsciiStandInTextsAndCommentsOnly) {
+  const std::string e = "\xc3\xa9";
+  for (const std::string& text : {e, "[[" + e + "]]", "rms = 1 " + e, "rms" + e + " = 1",
+                                  "output = \"\"\"\\ \n " + e + "\"\"\""})
+    EXPECT_NE(message_of<FormatError>(text).find("beyond ASCII"), std::string::npos) << text;
+  for (const std::string& text :
+       {"\xef\xbb\xbf# " + e + "\noutput = '" + e + "'", "output = \"\\\"" + e + "\"",
+        "output = \"\"\"\\\n a\\\"" + e + "\"\"\""})
+    EXPECT_NE(read_job_text(text).output.find(e), std::string::npos) << text;
 }
 
 TEST(JobSyntax, MessagesAreShortAndInOneLine) {
