@@ -104,18 +104,22 @@ class ReportFile {
   ReportFile(std::string path, Clock::time_point start, double read_seconds)
       : path_(std::move(path)), start_(start), read_seconds_(read_seconds) {}
 
-  /// At most once a second: an ensemble of thousands would write its report thousands of times.
-  void update(Report report) {
-    const bool is_due = !written_ || seconds_since(*written_) > 1;
-    latest_ = std::move(report);
-    if (is_due) write();
+  /// Takes over what a report that only grows has more than the last time, and writes at most once
+  /// a second: an ensemble of thousands would copy and write its report thousands of times.
+  void update(const Report& report) {
+    if (latest_.realizations.empty()) {
+      latest_ = report;
+    } else {
+      append_rest(report.realizations, latest_.realizations);
+      append_rest(report.warnings, latest_.warnings);
+      latest_.timings = report.timings;
+    }
+    if (!written_ || seconds_since(*written_) > pause_) write();
   }
 
-  void write() {
-    latest_.timings.read = read_seconds_;
-    latest_.timings.total = seconds_since(start_);
-    write_text(to_json(latest_), path_);
-    written_ = Clock::now();
+  void finish(Report report) {
+    latest_ = std::move(report);
+    write();
   }
 
   /// After an error: the realizations before it, and why there are no more.
@@ -133,10 +137,26 @@ class ReportFile {
   const Report& latest() const { return latest_; }
 
  private:
+  template <class Item>
+  static void append_rest(const std::vector<Item>& from, std::vector<Item>& to) {
+    to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(to.size()), from.end());
+  }
+
+  void write() {
+    const Clock::time_point begin = Clock::now();
+    latest_.timings.read = read_seconds_;
+    latest_.timings.total = seconds_since(start_);
+    write_text(to_json(latest_), path_);
+    written_ = Clock::now();
+    // A long report takes long to write, which must stay a small part of the run.
+    pause_ = std::max(1.0, 20 * seconds_since(begin));
+  }
+
   std::string path_;
   Clock::time_point start_;
   double read_seconds_;
   Report latest_;
+  double pause_ = 0;  ///< seconds between two writes
   std::optional<Clock::time_point> written_;
 };
 
@@ -160,7 +180,7 @@ void make_realizations(const Mesh& mesh, const RoughenOptions& options,
     progress.show(report.realizations.size());
   };
   try {
-    file.update(roughen(mesh, options, deliver));
+    file.finish(roughen(mesh, options, deliver));
   } catch (const std::exception& error) {
     file.stop(error.what());
     throw;
@@ -205,7 +225,6 @@ void run_roughen(const RoughenOptions& options) {
   check_text_output(report_path(options));
   ReportFile file(report_path(options), start, seconds_since(start));
   make_realizations(mesh, options, losses, file);
-  file.write();
   if (options.quiet) return;
   print_summary(file.latest(), file.path());
   print_warnings(file.latest());

@@ -282,6 +282,7 @@ const FileFormat msh4_format = {
               .group_names = true,
               .periodic_links = true,
               .tags = true},
+    .losses = losses_of_msh,
     .encodings = {Encoding::text, Encoding::binary}};
 
 // Recognized and read by the same code as MSH 4.1.
@@ -295,6 +296,7 @@ const FileFormat msh2_format = {.format = MeshFormat::msh2,
                                           .group_names = true,
                                           .periodic_links = true,
                                           .tags = true},
+                                .losses = losses_of_msh,
                                 .encodings = {Encoding::text, Encoding::binary}};
 
 }  // namespace roughmesh::detail

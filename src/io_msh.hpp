@@ -77,6 +77,8 @@ void check_for_msh(const Mesh& mesh, const std::filesystem::path& path);
 /// $MeshFormat and $PhysicalNames, which versions share.
 void write_msh_format(NumberWriter& numbers, std::string_view version);
 void write_msh_names(NumberWriter& numbers, const Mesh& mesh);
+/// Names that have to be written differently.
+std::vector<std::string> losses_of_msh(const Mesh& mesh);
 
 void write_new_msh4(const Mesh& mesh, const WriteOptions& options, OutputFile& output);
 

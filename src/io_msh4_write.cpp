@@ -186,6 +186,15 @@ class Writer {
   std::vector<Entity> entities_;
 };
 
+// A name stands between double quotes in a line of its own.
+std::string msh_name(std::string name) {
+  for (char& c : name) {
+    if (c == '"') c = '\'';
+    if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = '_';
+  }
+  return name;
+}
+
 }  // namespace
 
 void check_for_msh(const Mesh& mesh, const std::filesystem::path& path) {
@@ -204,6 +213,14 @@ void write_msh_format(NumberWriter& numbers, std::string_view version) {
   numbers.text("$EndMeshFormat\n");
 }
 
+std::vector<std::string> losses_of_msh(const Mesh& mesh) {
+  const auto n = std::count_if(mesh.groups.begin(), mesh.groups.end(), [](const auto& group) {
+    return msh_name(group.name) != group.name;
+  });
+  if (n == 0) return {};
+  return {fmt::format("quotes and control characters in the names of {} physical groups", n)};
+}
+
 void write_msh_names(NumberWriter& numbers, const Mesh& mesh) {
   const auto is_named = [](const PhysicalGroup& group) { return !group.name.empty(); };
   const auto n = std::count_if(mesh.groups.begin(), mesh.groups.end(), is_named);
@@ -211,7 +228,7 @@ void write_msh_names(NumberWriter& numbers, const Mesh& mesh) {
   numbers.text(fmt::format("$PhysicalNames\n{}\n", n));
   for (const PhysicalGroup& group : mesh.groups)
     if (is_named(group))
-      numbers.text(fmt::format("{} {} \"{}\"\n", group.dimension, group.tag, group.name));
+      numbers.text(fmt::format("{} {} \"{}\"\n", group.dimension, group.tag, msh_name(group.name)));
   numbers.text("$EndPhysicalNames\n");
 }
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "job_syntax.hpp"
 #include "json_numbers.hpp"
 
 namespace roughmesh::detail {
@@ -55,7 +56,8 @@ class MaskTable {
 
   void refuse_other_keys() const {
     for (const auto& [key, value] : table_->items())
-      if (!known_.contains(key)) throw WrongMask(fmt::format("a mask without the key {}", key));
+      if (!known_.contains(key))
+        throw WrongMask(fmt::format("a mask without the key {}", one_line(key)));
   }
 
  private:

@@ -16,6 +16,7 @@
 #include "roughmesh/resolution.hpp"
 
 #include "file_formats.hpp"
+#include "job_syntax.hpp"
 #include "json_numbers.hpp"
 #include "options_json.hpp"
 
@@ -24,6 +25,7 @@ namespace {
 
 using nlohmann::json;
 
+/// Calls itself: the depth was checked before.
 json toml_to_json(const toml::node& node, const std::string& source) {
   if (const auto* table = node.as_table()) {
     json object = json::object();
@@ -46,15 +48,17 @@ json toml_to_json(const toml::node& node, const std::string& source) {
 }
 
 json parse_toml(const std::string& text, const std::string& source) {
+  detail::check_toml_syntax(text, source);
   try {
     return toml_to_json(toml::parse(text), source);
   } catch (const toml::parse_error& error) {
-    throw FormatError(
-        fmt::format("{}:{}: not TOML: {}", source, error.source().begin.line, error.description()));
+    throw FormatError(fmt::format("{}:{}: not TOML: {}", source, error.source().begin.line,
+                                  detail::one_line(error.description())));
   }
 }
 
 json parse_json(const std::string& text, const std::string& source) {
+  detail::check_json_syntax(text, source);
   json object = json::parse(text, nullptr, false);
   if (object.is_discarded())
     throw FormatError(fmt::format("{}: broken JSON; write it anew", source));

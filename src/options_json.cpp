@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "job_syntax.hpp"
 #include "json_numbers.hpp"
 #include "mask_json.hpp"
 
@@ -122,6 +123,18 @@ void from_json_value(const json& value, std::optional<Enum>& target) {
   from_json_value(value, target.emplace());
 }
 
+/// For a message: short whatever it is.
+std::string shown(const json& value) {
+  constexpr std::size_t longest = 60;
+  if (value.is_array()) return "a list";
+  if (value.is_object()) return "a table";
+  std::string text = value.dump();
+  if (text.size() <= longest) return text;
+  std::size_t end = longest;
+  while ((static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // whole UTF-8 signs only
+  return text.substr(0, end) + "...";
+}
+
 /// Reads options from the keys of one table and remembers which keys there are.
 class TableReader {
  public:
@@ -140,7 +153,7 @@ class TableReader {
       from_json_value(*found, member);
     } catch (const WrongType& wrong) {
       throw InputError(
-          fmt::format("{}: {} = {}; must be {}", place_, key, found->dump(), wrong.expected));
+          fmt::format("{}: {} = {}; must be {}", place_, key, shown(*found), wrong.expected));
     }
   }
 
@@ -152,7 +165,7 @@ class TableReader {
         throw InputError(
             fmt::format("{}: unknown key {}; `roughmesh roughen --help` lists the options, "
                         "written with _ for -",
-                        place_, key));
+                        place_, one_line(key)));
   }
 
  private:

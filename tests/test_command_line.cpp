@@ -279,6 +279,19 @@ TEST_F(CommandLine, AFullDiskLeavesNoPartialFile) {
   EXPECT_EQ(folder.names(), before);
 }
 
+TEST_F(CommandLine, AStoppedRunDescribesTheRealizationsBefore) {
+  for (const std::string name : {"0", "1", "2"}) std::filesystem::create_directory(folder / name);
+  const Outcome outcome = run(sphere_job + "-o {realization}/rough.msh --realizations 5");
+  expect_failure(outcome, 2, "no folder for realization 3");
+  const auto report = nlohmann::json::parse(test::read_bytes(folder / "rough.report.json"));
+  ASSERT_EQ(report["realizations"].size(), 3U);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(report["realizations"][k]["index"], k);
+    EXPECT_EQ(report["realizations"][k]["path"], std::to_string(k) + "/rough.msh");
+  }
+  EXPECT_TRUE(report["warnings"].back().get<std::string>().starts_with("stopped: "));
+}
+
 TEST_F(CommandLine, AnInterruptKeepsFinishedRealizationsOnly) {
   // Runs until a few realizations are there, then interrupts; 10^6 would take minutes.
   const Outcome outcome = test::run_in(

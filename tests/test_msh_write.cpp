@@ -85,6 +85,18 @@ TEST_P(NewMsh, IsTheSameWhenWrittenTwice) {
 }
 
 // gmsh keeps the groups of 2.2 by the entity of an element.
+// A double quote ends a name, and a line break the line that it stands in.
+TEST_P(NewMsh, KeepsTheFileWholeWhateverANameHolds) {
+  Mesh mesh = test::icosphere(1);
+  mesh.groups[0].name = "a\"b\n$Nodes\n\x7f";
+  const Mesh read = written(mesh);
+  EXPECT_EQ(read.groups[0].name, "a'b_$Nodes__");
+  EXPECT_EQ(read.nodes, mesh.nodes);
+  const auto losses = conversion_losses(mesh, folder / "a.msh", {.format = GetParam().format});
+  EXPECT_EQ(losses, std::vector<std::string>{
+                        "quotes and control characters in the names of 1 physical groups"});
+}
+
 TEST_P(NewMsh, IsReadByGmsh) {
   if (!test::has_gmsh()) GTEST_SKIP() << "no gmsh";
   const Mesh mesh = test::ball_in_box(4);

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Job files of any content are read or refused in one line; none ends the program.
+#include <gtest/gtest.h>
+
+#include "roughmesh/options.hpp"
+
+#include "support/files.hpp"
+
+using namespace roughmesh;
+
+namespace {
+
+RoughenOptions read_job_text(const std::string& text) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "job", text);
+  return read_job(folder / "job");
+}
+
+std::string repeated(const std::string& text, std::size_t n) {
+  std::string result;
+  result.reserve(n * text.size());
+  for (std::size_t i = 0; i < n; ++i) result += text;
+  return result;
+}
+
+/// Message of the error that reading the job throws; empty if it does not.
+template <class Kind>
+std::string message_of(const std::string& text) {
+  try {
+    read_job_text(text);
+  } catch (const Kind& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST(JobSyntax, EndlessNestingIsRefusedAndDoesNotUseUpTheStack) {
+  const std::size_t n = 200000;
+  const std::string keys = repeated("a.", n) + "a";
+  const std::string lists = repeated("[", n), ends = repeated("]", n);
+  for (const std::string& text :
+       {std::string(R"({"rms":)") + repeated("[", 10 * n), R"({"request":)" + lists + ends + "}",
+        std::string(R"({"rms":)") + repeated(R"({"a":)", n) + "1" + repeated("}", n) + "}",
+        keys + " = 1", "[" + keys + "]\n", std::string("x = {") + repeated("a . ", n) + "a = 1}",
+        std::string("[") + repeated("'a'.", n) + "a]\n", "x = '''\\'''''\n" + keys + " = 1",
+        "x = \"\\\"\"\n" + keys + " = 1", "x = 'a\\'\n" + keys + " = 1", "rms = " + lists}) {
+    const std::string message = message_of<FormatError>(text);
+    EXPECT_NE(message.find("32 lists or tables"), std::string::npos) << text.substr(0, 40);
+    EXPECT_LT(message.size(), 200U);
+  }
+}
+
+TEST(JobSyntax, BracketsAndDotsInTextsAndCommentsAreNoNesting) {
+  const std::string many = repeated("[.{", 100);
+  for (const std::string& text :
+       {"output = \"" + many + "\"", "output = '" + many + "'",
+        "output = \"\"\"\n" + many + "\\\"\"\"\"\"", "# " + many + "\noutput = 'a'",
+        "output = '''" + many + "'''''", R"({"output": "\")" + many + "\"}"})
+    EXPECT_FALSE(read_job_text(text).output.empty()) << text;
+  const std::string numbers = "length = [" + repeated("1.5, ", 100) + "1.5]";
+  EXPECT_EQ(read_job_text(numbers).surfaces[0].length.size(), 101U);
+}
+
+TEST(JobSyntax, ATableWithoutANameIsRefused) {
+  for (const std::string text :
+       {"[[#a]]\n", "[#]\n", "[\n", "[[[a]]]\n", "rms = 1\n [ \t=]\n", "\xef\xbb\xbf[#]\n"})
+    EXPECT_NE(message_of<FormatError>(text).find("table without a name"), std::string::npos)
+        << text;
+  for (const std::string text : {"[]", "[[]]", "[", "[[", "[a", "[ ", "[[ ]"})
+    EXPECT_FALSE(message_of<FormatError>(text).empty()) << text;
+}
+
+TEST(JobSyntax, SignsBeyondAsciiStandInTextsAndCommentsOnly) {
+  const std::string e = "\xc3\xa9";
+  for (const std::string& text : {e, "[[" + e + "]]", "rms = 1 " + e, "rms" + e + " = 1",
+                                  "output = \"\"\"\\ \n " + e + "\"\"\""})
+    EXPECT_NE(message_of<FormatError>(text).find("beyond ASCII"), std::string::npos) << text;
+  for (const std::string& text :
+       {"\xef\xbb\xbf# " + e + "\noutput = '" + e + "'", "output = \"\\\"" + e + "\"",
+        "output = \"\"\"\\\n a\\\"" + e + "\"\"\""})
+    EXPECT_NE(read_job_text(text).output.find(e), std::string::npos) << text;
+}
+
+TEST(JobSyntax, MessagesAreShortAndInOneLine) {
+  const std::string key = "\"a\\nb\" = 1";
+  for (const std::string& text : {std::string("rms = [[1], [2]]"), std::string("rms = {a = 1}"),
+                                  std::string("acf = '") + repeated("\xc3\xa9", 1000) + "'", key,
+                                  "[[mask]]\nkind = 'formula'\nexpression = 'x'\n" + key}) {
+    const std::string message = message_of<InputError>(text);
+    EXPECT_FALSE(message.empty()) << text;
+    EXPECT_LT(message.size(), 300U) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+}
