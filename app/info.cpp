@@ -137,6 +137,7 @@ void run_info(const RoughenOptions& options, bool has_rms) {
   const Roughness& request = options.surfaces.front();
   if (has_rms && !(std::isfinite(request.rms) && request.rms > 0))
     throw InputError(fmt::format("--rms: {:g}; must be a positive number", request.rms));
+  check_shape(request);
   const Mesh mesh = read_input(options);
   print_mesh(mesh, options.input);
   print_groups(mesh);

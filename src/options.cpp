@@ -119,16 +119,33 @@ bool has_placeholder(const std::string& text) {
   return find_placeholder(text, 0).begin != std::string::npos;
 }
 
-/// The report must not take the place of a mesh of the same run.
+std::filesystem::path normal(const std::string& path) {
+  return std::filesystem::absolute(path).lexically_normal();
+}
+
+/// Is this the path of one of the realizations of the run?
+bool is_realization(const RoughenOptions& o, const std::filesystem::path& path) {
+  const std::string text = path.string(), output = normal(o.output).string();
+  const std::size_t begin = find_placeholder(output, 0).begin;
+  if (begin == output.npos) return text == output;
+  std::uint64_t number = 0;
+  if (begin >= text.size() ||
+      std::from_chars(text.data() + begin, text.data() + text.size(), number).ec != std::errc())
+    return false;
+  return number >= o.first && number - o.first < o.realizations &&
+         normal(output_path(o.output, number)) == path;
+}
+
+/// The report must not take the place of a file of the same run.
 void check_report(const RoughenOptions& o) {
   if (o.output.empty()) return;
-  const auto normal = [](const std::string& path) {
-    return std::filesystem::absolute(path).lexically_normal();
-  };
   const std::filesystem::path report = normal(report_path(o));
-  for (const std::string& path : {o.input, o.output, output_path(o.output, o.first)})
-    if (!path.empty() && normal(path) == report)
-      throw InputError(fmt::format("--report: {}; is a mesh of this run, name another file", path));
+  bool is_taken = is_realization(o, report) || (!o.input.empty() && normal(o.input) == report);
+  for (const Roughness& surface : o.surfaces)
+    is_taken |= !surface.table.empty() && normal(surface.table) == report;
+  if (is_taken)
+    throw InputError(
+        fmt::format("--report: {}; is another file of this run, name a new one", report_path(o)));
 }
 
 void check_ensemble(const RoughenOptions& o) {
@@ -181,12 +198,7 @@ void check_roughness(const Roughness& o) {
   if (o.rms == 0)
     throw InputError("--rms: missing or 0; give the rms roughness, a positive number");
   require(std::isfinite(o.rms) && o.rms > 0, "--rms", o.rms, "a positive number");
-  require(o.edge_angle > 0 && o.edge_angle <= 180, "--edge-angle", o.edge_angle,
-          "above 0 and at most 180 degrees");
-  require(std::isfinite(o.angle), "--angle", o.angle, "a finite number of degrees");
-  check_lengths(o);
-  check_period(o);
-  mask_options(o);
+  check_shape(o);
   // Throws for a parameter that is missing, foreign to the family or out of range.
   Autocorrelation{autocorrelation_options(o)};
 }
@@ -245,6 +257,15 @@ std::string_view name(VolumeChoice choice) {
   return choice == VolumeChoice::move ? "move" : "none";
 }
 
+void check_shape(const Roughness& o) {
+  require(o.edge_angle > 0 && o.edge_angle <= 180, "--edge-angle", o.edge_angle,
+          "above 0 and at most 180 degrees");
+  require(std::isfinite(o.angle), "--angle", o.angle, "a finite number of degrees");
+  check_lengths(o);
+  check_period(o);
+  mask_options(o);
+}
+
 void check_options(const RoughenOptions& o) {
   require(std::isfinite(o.tolerance) && o.tolerance > 0, "--tolerance", o.tolerance,
           "a positive number");
@@ -261,8 +282,19 @@ RoughenOptions read_job(const std::filesystem::path& path) {
   const std::string source = path.string();
   const std::size_t start = text.find_first_not_of(" \t\r\n");
   const bool is_json = start != std::string::npos && text[start] == '{';
-  return detail::options_from_json(is_json ? parse_json(text, source) : parse_toml(text, source),
-                                   source);
+  RoughenOptions options = detail::options_from_json(
+      is_json ? parse_json(text, source) : parse_toml(text, source), source);
+  // A file from elsewhere must not choose what runs here. The report of a run names both; who
+  // trusts it says so again.
+  const RoughenOptions defaults;
+  const bool is_report = is_json && text.find("\"request\"") != text.npos;
+  if (!is_report && (options.trust_scripts || options.gmsh != defaults.gmsh))
+    throw InputError(fmt::format(
+        "{}: {}; only the command line may say it, so that a job runs nothing of its own", source,
+        options.trust_scripts ? "trust_scripts" : "gmsh"));
+  options.gmsh = defaults.gmsh;
+  options.trust_scripts = defaults.trust_scripts;
+  return options;
 }
 
 std::string output_path(const std::string& output, std::uint64_t realization) {
@@ -351,22 +383,32 @@ WriteOptions write_options(const RoughenOptions& o) {
   return options;
 }
 
+namespace {
+
+/// Along its shortest axis, in the sense of the formula; nothing without a length.
+std::optional<double> shortest_length(const Roughness& o) {
+  if (o.length.empty() && !o.rolloff && o.table.empty()) return std::nullopt;
+  if (o.length.size() > 1) return *std::min_element(o.length.begin(), o.length.end());
+  return Autocorrelation(autocorrelation_options(o)).length();
+}
+
+}  // namespace
+
 GeometryOptions geometry_options(const RoughenOptions& o) {
-  const Roughness& first = o.surfaces.front();
-  const bool has_length = !first.length.empty() || first.rolloff || !first.table.empty();
-  // A script knows its own sizes.
-  const bool is_script = detail::lower_extension(o.input) == ".geo";
-  if (!o.mesh_size && !is_script && !has_length)
-    throw InputError(
-        "--mesh-size: missing; CAD files need it, or --length, of which it is 1 / 2.5");
   GeometryOptions options;
   options.gmsh = o.gmsh;
   options.timeout = o.timeout;
   options.trust_scripts = o.trust_scripts;
-  if (o.mesh_size)
-    options.mesh_size = *o.mesh_size;
-  else if (!is_script)
-    options.mesh_size = Autocorrelation(autocorrelation_options(first)).length() / sizes_per_length;
+  if (o.mesh_size) options.mesh_size = *o.mesh_size;
+  // A script knows its own sizes.
+  if (o.mesh_size || detail::lower_extension(o.input) == ".geo") return options;
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const Roughness& surface : o.surfaces)
+    shortest = std::min(shortest, shortest_length(surface).value_or(shortest));
+  if (!std::isfinite(shortest))
+    throw InputError(
+        "--mesh-size: missing; CAD files need it, or --length, of which it is 1 / 2.5");
+  options.mesh_size = shortest / sizes_per_length;
   return options;
 }
 

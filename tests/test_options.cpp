@@ -229,6 +229,44 @@ TEST(Options, FadesArePositiveWidthsWithAGroup) {
     EXPECT_FALSE(fade_refused(text)) << text;
 }
 
+TEST(Options, AJobChoosesNoProgramToRun) {
+  for (const std::string text : {"trust_scripts = true", "gmsh = './evil.sh'", "{\"gmsh\": \"x\"}"})
+    EXPECT_THROW(read_job_text(text), InputError) << text;
+  RoughenOptions options = good_options();
+  options.gmsh = "./evil.sh";
+  options.trust_scripts = true;
+  const nlohmann::ordered_json report = {{"request", detail::options_to_json(options)}};
+  EXPECT_EQ(read_job_text(report.dump()).gmsh, "gmsh");
+  EXPECT_FALSE(read_job_text(report.dump()).trust_scripts);
+}
+
+TEST(Options, TheReportTakesThePlaceOfNoFileOfTheRun) {
+  RoughenOptions options = good_options();
+  options.output = "r_{realization:02}.msh";
+  options.realizations = 3;
+  options.first = 1;
+  for (const std::string report : {"r_01.msh", "r_03.msh", "./x/../r_02.msh"}) {
+    options.report = report;
+    EXPECT_NE(refusal(options).find("--report"), std::string::npos) << report;
+  }
+  for (const std::string report : {"r_00.msh", "r_04.msh", "r_1.msh", "r_.msh", "r.json"}) {
+    options.report = report;
+    EXPECT_EQ(refusal(options), "") << report;
+  }
+}
+
+TEST(Options, CadIsMeshedForTheShortestLength) {
+  RoughenOptions options = good_options();
+  options.input = "a.STEP";
+  options.surfaces[0].length = {2, 0.5, 1};
+  EXPECT_DOUBLE_EQ(geometry_options(options).mesh_size, 0.5 / 2.5);
+  options.surfaces.push_back(options.surfaces[0]);
+  options.surfaces[1].length = {0.25};
+  EXPECT_DOUBLE_EQ(geometry_options(options).mesh_size, 0.25 / 2.5);
+  options.input = "a.GEO";
+  EXPECT_EQ(geometry_options(options).mesh_size, 0);
+}
+
 TEST(Options, OutputNamesFollowTheTemplate) {
   EXPECT_EQ(output_path("rough_{realization}.msh", 7), "rough_7.msh");
   EXPECT_EQ(output_path("{realization:04}/r{realization}.vtu", 12), "0012/r12.vtu");

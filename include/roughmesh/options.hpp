@@ -232,10 +232,14 @@ struct Choices<MeshFormat> {
 /// @throws InputError  names the option as on the command line, the value and the range
 void check_options(const RoughenOptions& options);
 
+/// The part of it that belongs to one surface, without its rms roughness and length.
+void check_shape(const Roughness& roughness);
+
 /// Options from a job file: TOML, or JSON (an object of options, or the report of an earlier run,
 /// whose "request" is taken). Options that the file does not name keep their defaults. Options of a
 /// surface stand at the top, or in one table `surface` for each of several; what such a table does
-/// not name, it takes from the top.
+/// not name, it takes from the top. `gmsh` and `trust_scripts`, which could run programs, are for
+/// the command line: refused in a job, left out of a report.
 /// @throws InputError   unknown key, value of the wrong type
 /// @throws FormatError  neither TOML nor JSON
 RoughenOptions read_job(const std::filesystem::path& path);
