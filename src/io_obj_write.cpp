@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "corner_normals.hpp"
 #include "io_obj.hpp"
 #include "io_patch.hpp"
 
@@ -30,7 +31,7 @@ Replacement of_normal(std::uint64_t offset, const Vec3& normal) {
 void append_normals(const Mesh& mesh, std::vector<Replacement>& replacements) {
   const ObjContent content = parse_obj(mesh.source->file, true);
   const ObjCorners& corners = content.corners;
-  const std::vector<bool> moved = moved_nodes(mesh);
+  const std::vector<bool> moved = has_moved(mesh);
   CornerNormals sums(mesh.nodes, content.normals.size());
   std::vector<bool> is_stale(content.normals.size());
   std::size_t begin = 0;
@@ -38,7 +39,7 @@ void append_normals(const Mesh& mesh, std::vector<Replacement>& replacements) {
     const std::span nodes = std::span(corners.nodes).subspan(begin, end - begin);
     const std::span normals = std::span(corners.normals).subspan(begin, end - begin);
     begin = end;
-    sums.add_face(nodes, normals);
+    sums.add_face(nodes, normals, nodes.size());
     if (std::none_of(nodes.begin(), nodes.end(), [&](Index node) { return moved[node]; })) continue;
     for (const Index normal : normals)
       if (normal >= 0) is_stale[normal] = true;

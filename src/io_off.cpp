@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "corner_normals.hpp"
 #include "file_formats.hpp"
 #include "io_patch.hpp"
 #include "scanner.hpp"
@@ -169,14 +170,15 @@ void write_patched_off(const Mesh& mesh, OutputFile& output) {
   Scanner scanner(source.file);
   skip_space_and_comments(scanner);
   if (!parse_kind(scanner.rest().substr(0, 32)).has_normals) return write_patched(mesh, output);
-  const NodeNormals normals(mesh);
+  const std::vector<bool> is_stale = is_at_moved_face(mesh);
+  const std::vector<Vec3> normals = node_normals(mesh, stored_positions(mesh));
   TriplePatcher patcher(source, output);
   for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
     if (!same_bits(source.positions[i], mesh.nodes[i]))
       patcher.replace(source.offsets[i], source.positions[i], mesh.nodes[i]);
-    if (!normals.is_stale[i]) continue;
+    if (!is_stale[i]) continue;
     if (const auto normal = normal_offset(scanner, source.offsets[i]))
-      patcher.replace(*normal, normals.normals[i]);
+      patcher.replace(*normal, normals[i]);
   }
   patcher.finish();
 }

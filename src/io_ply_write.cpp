@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "corner_normals.hpp"
 #include "io_patch.hpp"
 #include "io_ply.hpp"
 #include "surface_files.hpp"
@@ -200,17 +201,19 @@ void write_patched_ply(const Mesh& mesh, OutputFile& output) {
   const PlyHeader header = read_ply_header(scanner);
   const PlyElement& vertex = *header.find("vertex");
   const PlyVertexLayout layout(vertex);
-  std::optional<NodeNormals> normals;
-  if (layout.has_normals) normals.emplace(mesh);
+  std::vector<Vec3> normals;
+  std::vector<bool> is_stale(mesh.nodes.size());
+  if (layout.has_normals) {
+    normals = node_normals(mesh, stored_positions(mesh));
+    is_stale = is_at_moved_face(mesh);
+  }
   TriplePatcher patcher(source, output);
   for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
-    const bool has_normal = normals && normals->is_stale[i];
-    if (!has_normal && same_bits(source.positions[i], mesh.nodes[i])) continue;
+    if (!is_stale[i] && same_bits(source.positions[i], mesh.nodes[i])) continue;
     scanner.move_to(source.offsets[i]);
-    patch_vertex(
-        scanner, vertex, layout,
-        {&source.positions[i], &mesh.nodes[i], has_normal ? &normals->normals[i] : nullptr},
-        patcher);
+    patch_vertex(scanner, vertex, layout,
+                 {&source.positions[i], &mesh.nodes[i], is_stale[i] ? &normals[i] : nullptr},
+                 patcher);
   }
   patcher.finish();
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the formats of bare surfaces share: faces as blocks, normals of vertices, and which part of
-// a mesh goes into such a file.
+// What the formats of bare surfaces share: faces as blocks, and which part of a mesh goes into
+// such a file.
 #pragma once
 
 #include <array>
@@ -51,38 +51,6 @@ Index checked_node(const Scanner& scanner, Tag number, Index n_nodes);
 
 /// Numbers the nodes of a mesh 1, 2, 3, ...
 void number_nodes(Mesh& mesh);
-
-/// Positions as the source's number format holds them.
-std::vector<Vec3> stored_positions(const MeshSource& source, const std::vector<Vec3>& positions);
-
-/// Unit normals of slots, which are nodes or whatever else a file gives normals to: each slot sums
-/// the corners that use it (docs/math.md, eq. 2). The sum is zero, and so is the normal, where
-/// faces have no area or cancel.
-class CornerNormals {
- public:
-  /// @param positions  kept by reference, in the order that `nodes` of add_face refer to
-  CornerNormals(const std::vector<Vec3>& positions, std::size_t n_slots);
-
-  /// A face of 3 or 4 corners; slots outside of [0, n_slots) stand for none.
-  void add_face(std::span<const Index> nodes, std::span<const Index> slots);
-  Vec3 normal(std::size_t slot) const;
-
- private:
-  const std::vector<Vec3>* positions_;
-  double scale_ = 1;  // keeps squares of lengths within the range of doubles
-  std::vector<Vec3> sums_;
-};
-
-/// Normals at the nodes of all faces of a mesh that was moved, at its positions as stored.
-/// `is_stale[i]`: a face at node i has a node that moved.
-struct NodeNormals {
-  NodeNormals(const Mesh& mesh);
-
-  std::vector<bool> is_stale;
-  std::vector<Vec3> normals;
-};
-
-std::vector<bool> moved_nodes(const Mesh& mesh);  ///< by bits, against its source
 
 /// The part of a mesh that a file of elements of dimension `least_dimension` to 2 holds. Nodes that
 /// only other elements use are left out.
