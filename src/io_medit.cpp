@@ -8,12 +8,11 @@
 #include <cmath>
 #include <cstring>
 #include <map>
-#include <numeric>
 #include <optional>
 
 #include <fmt/format.h>
 
-#include "block_finder.hpp"
+#include "block_builder.hpp"
 #include "io_patch.hpp"
 #include "node_orders.hpp"
 #include "scanner.hpp"
@@ -262,16 +261,16 @@ void read_vertices(MeditReader& reader) {
     reader.integer();  // reference
   }
   reader.finish();
-  reader.mesh.node_tags.resize(*n);
-  std::iota(reader.mesh.node_tags.begin(), reader.mesh.node_tags.end(), Tag{1});
+  number_nodes(reader.mesh);
 }
 
-void read_element(MeditReader& reader, const MeditElements& elements, BlockFinder& finder,
+void read_element(MeditReader& reader, const MeditElements& elements, BlockBuilder& blocks,
                   std::vector<Index>* corners) {
   std::array<Index, 10> nodes{};
   for (const int place : elements.places)
     nodes[static_cast<std::size_t>(place)] = reader.number(reader.mesh.n_nodes(), "vertex");
-  ElementBlock& block = finder.find(elements.type, 0, reader.integer());
+  blocks.set_group(reader.integer());
+  ElementBlock& block = blocks.find(elements.type);
   block.nodes.insert(block.nodes.end(), nodes.begin(), nodes.begin() + elements.type.n_nodes);
   block.tags.push_back(++reader.n_elements);
   if (corners != nullptr)
@@ -301,7 +300,7 @@ void read_elements(MeditReader& reader) {
   std::sort(present.begin(), present.end(), [&](const MeditElements* a, const MeditElements* b) {
     return reader.sections.at(a->keyword).offset < reader.sections.at(b->keyword).offset;
   });
-  BlockFinder finder(reader.mesh.blocks);
+  BlockBuilder blocks(reader.mesh.blocks);
   for (const MeditElements* const elements : present) {
     const MeditElements& rows = by_length_of_rows(reader, *elements);
     const auto n_numbers = static_cast<std::size_t>(rows.type.n_nodes) + 1;
@@ -311,16 +310,12 @@ void read_elements(MeditReader& reader) {
       corners = &reader.edges;
     if (rows.keyword == "Triangles" && reader.sections.contains("NormalAtTriangleVertices"))
       corners = &reader.triangles;
-    for (std::size_t i = 0; i < *n; ++i) read_element(reader, rows, finder, corners);
+    for (std::size_t i = 0; i < *n; ++i) read_element(reader, rows, blocks, corners);
     reader.finish();
   }
   reader.scanner.set_section("");
-  if (reader.n_elements == 0) reader.scanner.fail("no elements; save the mesh after meshing");
-  if (reader.n_elements > largest_index)
-    reader.scanner.refuse(
-        fmt::format("{} elements are more than the {} that roughmesh handles; split the mesh",
-                    reader.n_elements, largest_index));
-  list_used_groups(reader.mesh);
+  check_element_count(reader.scanner, reader.n_elements);
+  reader.mesh.groups = used_groups(reader.mesh.blocks);
 }
 
 // Normals or tangents, on no nodes yet.

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "block_builder.hpp"
 #include "corner_normals.hpp"
 #include "file_formats.hpp"
 #include "io_patch.hpp"
@@ -123,7 +124,7 @@ class OffReader {
 
   void read_faces(std::size_t n) {
     scanner_.set_section("faces");
-    BlockBuilder blocks;
+    BlockBuilder blocks(mesh_.blocks);
     for (std::size_t i = 0; i < n; ++i) {
       skip_space_and_comments(scanner_);
       const Tag n_corners = scanner_.text_integer();
@@ -135,7 +136,6 @@ class OffReader {
       blocks.add_face(static_cast<Tag>(i) + 1,
                       {corners.data(), static_cast<std::size_t>(n_corners)});
     }
-    mesh_.blocks = blocks.take();
   }
 
   Scanner scanner_;

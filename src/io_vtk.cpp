@@ -6,11 +6,10 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <numeric>
 
 #include <fmt/format.h>
 
-#include "block_finder.hpp"
+#include "block_builder.hpp"
 #include "vtk_cells.hpp"
 
 namespace roughmesh::detail {
@@ -350,7 +349,7 @@ std::vector<std::pair<const VtkCells*, Tag>> cell_sections(const VtkReader& read
 void add_cells(VtkReader& reader) {
   const std::vector<Tag>* const groups = first_array(reader, vtk_group_arrays());
   const std::vector<Tag>* const entities = first_array(reader, vtk_entity_arrays());
-  BlockFinder finder(reader.mesh.blocks);
+  BlockBuilder blocks(reader.mesh.blocks);
   Tag number = 0;
   for (const auto& [cells, list_type] : cell_sections(reader))
     for (std::size_t i = 0; i < cells->size(); ++i, ++number) {
@@ -361,11 +360,11 @@ void add_cells(VtkReader& reader) {
       const Tag type = plain_type(stated, place.n_nodes());
       const VtkCell* const cell = vtk_cell(type);
       if (cell == nullptr) refuse_type(reader, place, type);
-      ElementBlock& block = finder.find(cell->type, entities == nullptr ? 0 : (*entities)[n],
-                                        groups == nullptr ? 0 : (*groups)[n]);
+      blocks.set_group(groups == nullptr ? 0 : (*groups)[n]);
+      ElementBlock& block = blocks.find(cell->type, entities == nullptr ? 0 : (*entities)[n]);
       add_cell(reader, place, type, block, *cell);
     }
-  list_used_groups(reader.mesh);
+  reader.mesh.groups = used_groups(reader.mesh.blocks);
 }
 
 void check_complete(VtkReader& reader) {
@@ -388,8 +387,7 @@ Mesh read_vtk(FileBytes file) {
   read_head(reader);
   read_sections(reader);
   check_complete(reader);
-  reader.mesh.node_tags.resize(reader.mesh.nodes.size());
-  std::iota(reader.mesh.node_tags.begin(), reader.mesh.node_tags.end(), Tag{1});
+  number_nodes(reader.mesh);
   add_cells(reader);
   if (reader.mesh.blocks.empty()) reader.scanner.fail("all cells are empty; save the mesh again");
   reader.mesh.format = MeshFormat::vtk;

@@ -2,7 +2,6 @@
 #include "surface_files.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include <fmt/format.h>
 
@@ -16,26 +15,6 @@ bool is_held(const ElementBlock& block, int least_dimension) {
 
 }  // namespace
 
-void BlockBuilder::set_groups(std::vector<Tag> groups) {
-  if (groups == groups_) return;
-  groups_ = std::move(groups);
-  current_.fill(none);
-}
-
-std::size_t BlockBuilder::find_block(const ElementType& type) {
-  const auto [place, is_new] = places_.try_emplace({type.shape, groups_}, blocks_.size());
-  if (is_new) blocks_.push_back({type, 0, groups_, {}, {}});
-  return place->second;
-}
-
-void BlockBuilder::add(const ElementType& type, Tag number, std::span<const Index> nodes) {
-  std::size_t& current = current_[static_cast<std::size_t>(type.shape)];
-  if (current == none) current = find_block(type);
-  ElementBlock& block = blocks_[current];
-  block.tags.push_back(number);
-  block.nodes.insert(block.nodes.end(), nodes.begin(), nodes.end());
-}
-
 void check_face_size(const Scanner& scanner, Tag n_corners) {
   if (n_corners != 3 && n_corners != 4)
     scanner.fail(fmt::format("a face with {} corners; split it into triangles", n_corners));
@@ -46,11 +25,6 @@ Index checked_node(const Scanner& scanner, Tag number, Index n_nodes) {
     scanner.fail(
         fmt::format("node {} does not exist: they are numbered 0 to {}", number, n_nodes - 1));
   return static_cast<Index>(number);
-}
-
-void number_nodes(Mesh& mesh) {
-  mesh.node_tags.resize(mesh.nodes.size());
-  std::iota(mesh.node_tags.begin(), mesh.node_tags.end(), Tag{1});
 }
 
 SurfacePart::SurfacePart(const Mesh& mesh, int least_dimension) : numbers(mesh.nodes.size(), -1) {
