@@ -87,7 +87,7 @@ void write_blocks(const Mesh& mesh, const NewNumbers& numbers, OutputFile& outpu
     output.write(fmt::format("*ELEMENT, TYPE={}\n", type_name(block.type, plane)));
     for (Index e = 0; e < block.size(); ++e) {
       std::vector<Tag> line = {numbers.elements[b][static_cast<std::size_t>(e)]};
-      for (const int place : abaqus_node_order().in_gmsh(block.type))
+      for (const int place : abaqus_node_orders().in_gmsh(block.type))
         line.push_back(numbers.nodes[static_cast<std::size_t>(
             block.element(e)[static_cast<std::size_t>(place)])]);
       write_list(line, output);

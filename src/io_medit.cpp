@@ -32,10 +32,12 @@ std::span<const MeditElements> medit_elements() {
       section("Prisms", 9, {.type = {prism, 1, 6}}),
       section("Hexahedra", 10, {.type = {hexahedron, 1, 8}}),
       section("Pyramids", 49, {.type = {pyramid, 1, 5}}),
-      section("EdgesP2", 25, {.type = {line, 2, 3}, .middles = "01"}),
-      section("TrianglesP2", 24, {.type = {triangle, 2, 6}, .middles = "01 12 20"}),
-      section("QuadrilateralsQ2", 27, {.type = {quadrangle, 2, 9}, .middles = "01 12 23 30 0123"}),
-      section("TetrahedraP2", 30, {.type = {tetrahedron, 2, 10}, .middles = "01 12 20 03 13 23"})};
+      section("EdgesP2", 25, {.type = {line, 2, 3}, .nodes = "0 1 01"}),
+      section("TrianglesP2", 24, {.type = {triangle, 2, 6}, .nodes = "0 1 2 01 12 20"}),
+      section("QuadrilateralsQ2", 27,
+              {.type = {quadrangle, 2, 9}, .nodes = "0 1 2 3 01 12 23 30 0123"}),
+      section("TetrahedraP2", 30,
+              {.type = {tetrahedron, 2, 10}, .nodes = "0 1 2 3 01 12 20 03 13 23"})};
   return table;
 }
 

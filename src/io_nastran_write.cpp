@@ -196,7 +196,7 @@ void write_elements(const Mesh& mesh, const NewNumbers& numbers, const Propertie
     for (Index e = 0; e < block.size(); ++e) {
       std::vector<Tag> fields = {numbers.elements[b][static_cast<std::size_t>(e)],
                                  properties(block)};
-      for (const int place : nastran_node_order().in_gmsh(block.type))
+      for (const int place : nastran_node_orders().in_gmsh(block.type))
         fields.push_back(numbers.nodes[static_cast<std::size_t>(
             block.element(e)[static_cast<std::size_t>(place)])]);
       write_card(card_name(block.type), fields, output);

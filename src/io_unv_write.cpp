@@ -53,7 +53,7 @@ void write_elements(const Mesh& mesh, const NewNumbers& numbers, OutputFile& out
                     output);
       if (block.type.shape == ElementShape::line) write_numbers({0, 0, 0}, output);
       std::vector<Tag> nodes;
-      for (const int place : unv_node_order().in_gmsh(block.type))
+      for (const int place : unv_node_orders().in_gmsh(block.type))
         nodes.push_back(numbers.nodes[static_cast<std::size_t>(
             block.element(e)[static_cast<std::size_t>(place)])]);
       write_numbers(nodes, output);

@@ -8,7 +8,7 @@
 
 #include "roughmesh/error.hpp"
 
-#include "serendipity.hpp"
+#include "node_orders.hpp"
 
 namespace roughmesh::detail {
 namespace {
