@@ -6,14 +6,11 @@
 #include <fmt/format.h>
 
 #include "io_medit.hpp"
+#include "new_file.hpp"
 #include "number_writer.hpp"
 
 namespace roughmesh::detail {
 namespace {
-
-Tag reference(const ElementBlock& block) {
-  return block.physical_groups.empty() ? 0 : block.physical_groups.front();
-}
 
 // Those with a section of the same shape in some order; points have none.
 bool is_lost(const ElementBlock& block) { return block.type.shape == ElementShape::point; }
@@ -31,7 +28,7 @@ class Writer {
   Writer(const Mesh& mesh, OutputFile& output, Encoding encoding)
       : mesh_(&mesh), numbers_(output, encoding) {
     for (const ElementBlock& block : mesh.blocks)
-      is_wide_ |= !std::in_range<std::int32_t>(reference(block));
+      is_wide_ |= !std::in_range<std::int32_t>(first_group(block));
   }
 
   void write_all() {
@@ -90,7 +87,7 @@ class Writer {
       for (Index i = 0; i < block.size(); ++i) {
         for (const int place : elements.places)
           integer(Tag{block.element(i)[static_cast<std::size_t>(place)]} + 1);
-        integer(reference(block));
+        integer(first_group(block));
         numbers_.end_line();
       }
     }

@@ -7,6 +7,7 @@
 #include "corner_normals.hpp"
 #include "io_obj.hpp"
 #include "io_patch.hpp"
+#include "new_file.hpp"
 
 namespace roughmesh::detail {
 namespace {

@@ -9,6 +9,7 @@
 #include "corner_normals.hpp"
 #include "io_patch.hpp"
 #include "io_ply.hpp"
+#include "new_file.hpp"
 #include "surface_files.hpp"
 
 namespace roughmesh::detail {
@@ -102,10 +103,6 @@ std::string component_name(const PointField& field, int k) {
   return fmt::format("{}_{}", field.name, letters[axis]);
 }
 
-Tag group_of(const ElementBlock& block) {
-  return block.physical_groups.empty() ? 0 : block.physical_groups.front();
-}
-
 class PlyWriter {
  public:
   PlyWriter(const Mesh& mesh, const WriteOptions& options, OutputFile& output)
@@ -114,8 +111,9 @@ class PlyWriter {
         output_(&output),
         part_(mesh, 1),
         encoding_(options.encoding.value_or(Encoding::binary)),
-        has_groups_(std::any_of(part_.blocks.begin(), part_.blocks.end(),
-                                [](const ElementBlock* block) { return group_of(*block) != 0; })) {}
+        has_groups_(
+            std::any_of(part_.blocks.begin(), part_.blocks.end(),
+                        [](const ElementBlock* block) { return first_group(*block) != 0; })) {}
 
   void write() {
     write_header();
@@ -136,7 +134,7 @@ class PlyWriter {
     for (const PhysicalGroup& group : mesh_->groups)
       if (!group.name.empty() && group.dimension >= 1 && group.dimension <= 2)
         text("comment {} {} {} {}\n", ply_group, group.dimension, group.tag,
-             group_name(*mesh_, group.dimension, group.tag));
+             group_name(group, GroupNames::of_dimension));
     text("element vertex {}\n", part_.nodes.size());
     for (const char axis : {'x', 'y', 'z'}) text("property double {}\n", axis);
     write_field_names();
@@ -179,7 +177,7 @@ class PlyWriter {
       for (Index i = 0; i < block->size(); ++i) {
         if (dim == 2) row.add(static_cast<std::uint8_t>(block->type.n_nodes));
         for (const Index node : block->element(i)) row.add(std::int32_t{part_.numbers[node]});
-        if (has_groups_) row.add(static_cast<std::int32_t>(group_of(*block)));
+        if (has_groups_) row.add(static_cast<std::int32_t>(first_group(*block)));
         row.end();
       }
     }
@@ -221,7 +219,7 @@ void write_patched_ply(const Mesh& mesh, OutputFile& output) {
 void check_ply(const Mesh& mesh, const std::filesystem::path& path) {
   check_surface_part(mesh, path, 1);
   for (const ElementBlock* block : SurfacePart(mesh, 1).blocks) {
-    const Tag group = group_of(*block);
+    const Tag group = first_group(*block);
     if (group != static_cast<std::int32_t>(group))
       throw InputError(
           fmt::format("{}: the group number {} does not fit into the 32 bits of a PLY "

@@ -9,6 +9,7 @@
 
 #include "io_patch.hpp"
 #include "io_stl.hpp"
+#include "new_file.hpp"
 #include "scanner.hpp"
 #include "surface_files.hpp"
 
@@ -68,7 +69,7 @@ class StlWriter {
     std::vector<std::pair<Tag, std::vector<const ElementBlock*>>> solids;
     std::map<Tag, std::size_t> places;
     for (const ElementBlock* block : part_.blocks) {
-      const Tag group = block->physical_groups.empty() ? 0 : block->physical_groups.front();
+      const Tag group = first_group(*block);
       const auto [place, is_new] = places.try_emplace(group, solids.size());
       if (is_new) solids.push_back({group, {}});
       solids[place->second].second.push_back(block);

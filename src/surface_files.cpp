@@ -63,14 +63,4 @@ void check_surface_part(const Mesh& mesh, const std::filesystem::path& path, int
                                    path.string(), name(block.type)));
 }
 
-std::string group_name(const Mesh& mesh, int dim, Tag tag) {
-  const auto group = std::find_if(
-      mesh.groups.begin(), mesh.groups.end(),
-      [&](const PhysicalGroup& each) { return each.dimension == dim && each.tag == tag; });
-  std::string text = group != mesh.groups.end() ? group->name : "";
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < 32 || c == 127) c = ' ';
-  return text.empty() ? fmt::format("group_{}", tag) : text;
-}
-
 }  // namespace roughmesh::detail

@@ -34,7 +34,4 @@ std::int64_t n_elements(const SurfacePart& part, int dimension);
 /// @throws InputError  no surface elements, or elements of that part that are of higher order
 void check_surface_part(const Mesh& mesh, const std::filesystem::path& path, int least_dimension);
 
-/// Name of the group: its own or, if that is empty, "group_5"; without control characters.
-std::string group_name(const Mesh& mesh, int dimension, Tag tag);
-
 }  // namespace roughmesh::detail
