@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "decimals.hpp"
 #include "io_abaqus.hpp"
 #include "io_patch.hpp"
 #include "new_file.hpp"

@@ -72,7 +72,7 @@ class Writer {
   void write_vertices() {
     begin("Vertices", medit_code::vertices, mesh_->n_nodes(), 24 + integer_bytes());
     for (const Vec3& x : mesh_->nodes) {
-      for (int k = 0; k < 3; ++k) numbers_.number(x[k]);
+      numbers_.vector(x);
       integer(0);
       numbers_.end_line();
     }

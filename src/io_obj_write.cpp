@@ -8,6 +8,7 @@
 #include "io_obj.hpp"
 #include "io_patch.hpp"
 #include "new_file.hpp"
+#include "number_writer.hpp"
 
 namespace roughmesh::detail {
 namespace {
@@ -93,7 +94,7 @@ class GroupWords {
 };
 
 const char* keyword(const ElementBlock& block) {
-  constexpr std::array words = {"p", "l", "f"};
+  constexpr std::array words = {"p ", "l ", "f "};
   return words[static_cast<std::size_t>(dimension(block.type.shape))];
 }
 
@@ -122,21 +123,22 @@ void check_obj(const Mesh& mesh, const std::filesystem::path& path) {
 void write_new_obj(const Mesh& mesh, const WriteOptions&, OutputFile& output) {
   const SurfacePart part(mesh, 0);
   const GroupWords words(mesh);
-  output.write("# written by roughmesh\n");
+  NumberWriter numbers(output, Encoding::text);
+  numbers.text("# written by roughmesh\n");
   for (const Index node : part.nodes) {
-    const Vec3& x = mesh.nodes[node];
-    output.write(fmt::format("v {} {} {}\n", x[0], x[1], x[2]));
+    numbers.text("v ");
+    numbers.vector(mesh.nodes[node]);
+    numbers.end_line();
   }
   std::string current = "g default\n";
   for (const ElementBlock* block : part.blocks) {
     std::string statement = words.statement(*block);
-    if (statement != current) output.write(statement);
+    if (statement != current) numbers.text(statement);
     current = std::move(statement);
     for (Index i = 0; i < block->size(); ++i) {
-      output.write(keyword(*block));
-      for (const Index node : block->element(i))
-        output.write(fmt::format(" {}", part.numbers[node] + 1));
-      output.write("\n");
+      numbers.text(keyword(*block));
+      for (const Index node : block->element(i)) numbers.number(part.numbers[node] + 1);
+      numbers.end_line();
     }
   }
 }

@@ -9,6 +9,7 @@
 #include "corner_normals.hpp"
 #include "file_formats.hpp"
 #include "io_patch.hpp"
+#include "number_writer.hpp"
 #include "scanner.hpp"
 #include "surface_files.hpp"
 
@@ -189,17 +190,17 @@ void check_off(const Mesh& mesh, const std::filesystem::path& path) {
 
 void write_new_off(const Mesh& mesh, const WriteOptions&, OutputFile& output) {
   const SurfacePart part(mesh, 2);
-  output.write(fmt::format("OFF\n{} {} 0\n", part.nodes.size(), n_elements(part, 2)));
+  NumberWriter numbers(output, Encoding::text);
+  numbers.text(fmt::format("OFF\n{} {} 0\n", part.nodes.size(), n_elements(part, 2)));
   for (const Index node : part.nodes) {
-    const Vec3& x = mesh.nodes[node];
-    output.write(fmt::format("{} {} {}\n", x[0], x[1], x[2]));
+    numbers.vector(mesh.nodes[node]);
+    numbers.end_line();
   }
   for (const ElementBlock* block : part.blocks)
     for (Index i = 0; i < block->size(); ++i) {
-      output.write(fmt::format("{}", block->type.n_nodes));
-      for (const Index node : block->element(i))
-        output.write(fmt::format(" {}", part.numbers[node]));
-      output.write("\n");
+      numbers.number(block->type.n_nodes);
+      for (const Index node : block->element(i)) numbers.number(part.numbers[node]);
+      numbers.end_line();
     }
 }
 

@@ -81,8 +81,6 @@ void patch_moved_nodes(const Mesh& mesh, OutputFile& output, Replace replace) {
   patcher.finish();
 }
 
-std::string shortest(double value);  ///< decimals that read back exactly
-
 /// The number that a format, or the source's own, holds for a value: nearest float32, or the value
 /// itself. Not inline: GCC 12 leaves the rounding out where it vectorizes conversions to float and
 /// back.

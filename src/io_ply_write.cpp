@@ -10,6 +10,7 @@
 #include "io_patch.hpp"
 #include "io_ply.hpp"
 #include "new_file.hpp"
+#include "number_writer.hpp"
 #include "surface_files.hpp"
 
 namespace roughmesh::detail {
@@ -47,37 +48,6 @@ void patch_vertex(Scanner& scanner, const PlyElement& vertex, const PlyVertexLay
                              *value);
   }
 }
-
-std::string_view little_endian(auto& value) {
-  if constexpr (std::endian::native == std::endian::big) value = reverse_bytes(value);
-  return {reinterpret_cast<const char*>(&value), sizeof value};
-}
-
-// The numbers of one element: a line of text or their bytes.
-class Row {
- public:
-  Row(OutputFile& output, Encoding encoding)
-      : output_(&output), is_text_(encoding == Encoding::text) {}
-
-  template <typename T>
-  void add(T value) {
-    if (is_text_)
-      fmt::format_to(std::back_inserter(text_), "{}{}", text_.size() == 0 ? "" : " ", value);
-    else
-      output_->write(little_endian(value));
-  }
-  void end() {
-    if (!is_text_) return;
-    text_.push_back('\n');
-    output_->write({text_.data(), text_.size()});
-    text_.clear();
-  }
-
- private:
-  OutputFile* output_;
-  bool is_text_;
-  fmt::memory_buffer text_;
-};
 
 // Names of properties are single words, and no two of them may be equal.
 class PropertyNames {
@@ -158,27 +128,27 @@ class PlyWriter {
   }
 
   void write_vertices() {
-    Row row(*output_, encoding_);
+    NumberWriter row(*output_, encoding_, std::endian::little);
     for (const Index node : part_.nodes) {
-      for (const double x : mesh_->nodes[node]) row.add(x);
+      row.vector(mesh_->nodes[node]);
       for (const PointField& field : options_->fields) {
         const auto n = static_cast<std::size_t>(field.n_components);
         for (std::size_t k = 0; k < n; ++k)
-          row.add(field.values[static_cast<std::size_t>(node) * n + k]);
+          row.number(field.values[static_cast<std::size_t>(node) * n + k]);
       }
-      row.end();
+      row.end_line();
     }
   }
 
   void write_elements(int dim) {
-    Row row(*output_, encoding_);
+    NumberWriter row(*output_, encoding_, std::endian::little);
     for (const ElementBlock* block : part_.blocks) {
       if (dimension(block->type.shape) != dim) continue;
       for (Index i = 0; i < block->size(); ++i) {
-        if (dim == 2) row.add(static_cast<std::uint8_t>(block->type.n_nodes));
-        for (const Index node : block->element(i)) row.add(std::int32_t{part_.numbers[node]});
-        if (has_groups_) row.add(static_cast<std::int32_t>(first_group(*block)));
-        row.end();
+        if (dim == 2) row.number(static_cast<std::uint8_t>(block->type.n_nodes));
+        for (const Index node : block->element(i)) row.number(std::int32_t{part_.numbers[node]});
+        if (has_groups_) row.number(static_cast<std::int32_t>(first_group(*block)));
+        row.end_line();
       }
     }
   }

@@ -46,7 +46,7 @@ class Writer {
   void write_points() {
     numbers_.text(fmt::format("POINTS {} double\n", mesh_->nodes.size()));
     for (const Vec3& x : mesh_->nodes) {
-      for (int k = 0; k < 3; ++k) numbers_.number(x[k]);
+      numbers_.vector(x);
       numbers_.end_line();
     }
     end_numbers();
