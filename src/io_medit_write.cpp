@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Writes a mesh as Medit text or binary from its arrays.
-#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -106,14 +105,6 @@ class Writer {
 };
 
 }  // namespace
-
-const MeditElements* medit_elements_of(const ElementType& type) {
-  const auto table = medit_elements();
-  const auto found = std::find_if(table.begin(), table.end(), [&](const MeditElements& elements) {
-    return elements.type == type;
-  });
-  return found == table.end() ? nullptr : &*found;
-}
 
 void check_for_medit(const Mesh& mesh, const std::filesystem::path& path) {
   bool has_elements = false;
