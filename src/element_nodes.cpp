@@ -22,11 +22,6 @@ bool has_middle_nodes(const ElementType& type) {
   return type.order == 2 && type.n_nodes > n_serendipity_nodes(type.shape);
 }
 
-ElementShape shape_of_face(std::size_t n_corners) {
-  if (n_corners == 2) return ElementShape::line;
-  return n_corners == 3 ? ElementShape::triangle : ElementShape::quadrangle;
-}
-
 // Nodes in the middle of faces come after those on edges, in the order of the quadrangles.
 std::vector<LocalFace> make_faces(const ElementType& type) {
   std::vector<LocalFace> faces;
@@ -126,6 +121,11 @@ const TypeFacts& facts(const ElementType& type) {
 }
 
 }  // namespace
+
+ElementShape shape_of_face(std::size_t n_corners) {
+  if (n_corners == 2) return ElementShape::line;
+  return n_corners == 3 ? ElementShape::triangle : ElementShape::quadrangle;
+}
 
 std::span<const LocalFace> element_faces(const ElementType& type) { return facts(type).faces; }
 
