@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "node_orders.hpp"
+
 namespace roughmesh::detail {
 namespace {
 
@@ -14,25 +16,10 @@ struct TypeFacts {
   std::vector<FollowingNode> following;
 };
 
-int node_on_edge(ElementShape shape, int a, int b) {
-  const auto edges = local_edges(shape);
-  const auto at = std::find_if(edges.begin(), edges.end(), [&](const auto& edge) {
-    return (edge[0] == a && edge[1] == b) || (edge[0] == b && edge[1] == a);
-  });
-  return n_corners(shape) + static_cast<int>(at - edges.begin());
-}
-
-int n_serendipity_nodes(ElementShape shape) {
-  return n_corners(shape) + static_cast<int>(local_edges(shape).size());
-}
+int n_serendipity_nodes(ElementShape shape) { return serendipity_type(shape, 2).n_nodes; }
 
 bool has_middle_nodes(const ElementType& type) {
   return type.order == 2 && type.n_nodes > n_serendipity_nodes(type.shape);
-}
-
-ElementShape shape_of_face(std::size_t n_corners) {
-  if (n_corners == 2) return ElementShape::line;
-  return n_corners == 3 ? ElementShape::triangle : ElementShape::quadrangle;
 }
 
 // Nodes in the middle of faces come after those on edges, in the order of the quadrangles.
@@ -47,7 +34,7 @@ std::vector<LocalFace> make_faces(const ElementType& type) {
       face.type.order = 2;
       const std::size_t n_edges = local_edges(face.type.shape).size();
       for (std::size_t k = 0; k < n_edges; ++k)
-        add(node_on_edge(type.shape, corners[k], corners[(k + 1) % corners.size()]));
+        add(middle_node(type.shape, corners[k], corners[(k + 1) % corners.size()]));
       if (corners.size() == 4 && dimension(type.shape) == 3 && has_middle_nodes(type))
         add(next_middle++);
     }
@@ -134,6 +121,11 @@ const TypeFacts& facts(const ElementType& type) {
 }
 
 }  // namespace
+
+ElementShape shape_of_face(std::size_t n_corners) {
+  if (n_corners == 2) return ElementShape::line;
+  return n_corners == 3 ? ElementShape::triangle : ElementShape::quadrangle;
+}
 
 std::span<const LocalFace> element_faces(const ElementType& type) { return facts(type).faces; }
 

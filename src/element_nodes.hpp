@@ -13,6 +13,9 @@ namespace roughmesh::detail {
 /// Nodes of one face, at most those of a quadrangle of order 2 with a node in its middle.
 inline constexpr std::size_t most_face_nodes = 9;
 
+/// Of a side with so many corners, 2 to 4.
+ElementShape shape_of_face(std::size_t n_corners);
+
 /// One side of an element of dimension 2 or 3: its type, and its local nodes in the order of that
 /// type, corners as in local_faces.
 struct LocalFace {

@@ -2,45 +2,15 @@
 #include "element_table.hpp"
 
 #include <algorithm>
-#include <set>
-#include <tuple>
 
 #include <fmt/format.h>
 
+#include "block_builder.hpp"
 #include "file_formats.hpp"
 #include "node_lookup.hpp"
 
 namespace roughmesh::detail {
 namespace {
-
-using BlockKey = std::tuple<ElementShape, int, Tag, std::vector<Tag>>;
-
-BlockKey key_of(const ElementBlock& block) {
-  return {block.type.shape, block.type.n_nodes, block.entity, block.physical_groups};
-}
-
-// Finds the block of an element's type, entity and groups, or begins it.
-class Blocks {
- public:
-  explicit Blocks(Mesh& mesh) : mesh_(&mesh) {}
-
-  ElementBlock& find(const ElementTable::Row& row, std::vector<Tag> groups) {
-    ElementBlock candidate{row.type, row.entity, std::move(groups), {}, {}};
-    BlockKey key = key_of(candidate);
-    // Neighbours in a file mostly belong together.
-    if (last_ < mesh_->blocks.size() && key == key_of(mesh_->blocks[last_]))
-      return mesh_->blocks[last_];
-    const auto [place, is_new] = places_.try_emplace(std::move(key), mesh_->blocks.size());
-    if (is_new) mesh_->blocks.push_back(std::move(candidate));
-    last_ = place->second;
-    return mesh_->blocks[last_];
-  }
-
- private:
-  Mesh* mesh_;
-  std::map<BlockKey, std::size_t> places_;
-  std::size_t last_ = 0;
-};
 
 NodeLookup look_up_nodes(const Mesh& mesh, const std::vector<std::uint64_t>& offsets,
                          const Scanner& scanner) {
@@ -51,16 +21,6 @@ NodeLookup look_up_nodes(const Mesh& mesh, const std::vector<std::uint64_t>& off
                                             mesh.node_tags[i]));
   }
   return lookup;
-}
-
-void add_groups(Mesh& mesh, const std::map<Tag, std::string>& names) {
-  std::set<std::pair<int, Tag>> used;
-  for (const ElementBlock& block : mesh.blocks)
-    for (const Tag group : block.physical_groups) used.emplace(dimension(block.type.shape), group);
-  for (const auto& [group_dimension, group] : used) {
-    const auto name = names.find(group);
-    mesh.groups.push_back({group_dimension, group, name == names.end() ? "" : name->second});
-  }
 }
 
 }  // namespace
@@ -95,13 +55,14 @@ void ElementTable::fill(Mesh& mesh, const std::vector<std::uint64_t>& node_offse
   check_numbers(scanner);
   std::sort(members_.begin(), members_.end());
   members_.erase(std::unique(members_.begin(), members_.end()), members_.end());
-  Blocks blocks(mesh);
+  BlockBuilder blocks(mesh.blocks);
   auto member = members_.begin();
   for (Index e = 0; e < static_cast<Index>(rows_.size()); ++e) {
     std::vector<Tag> groups;
     for (; member != members_.end() && member->first == e; ++member)
       groups.push_back(member->second);
-    ElementBlock& block = blocks.find(row(e), std::move(groups));
+    blocks.set_groups(std::move(groups));
+    ElementBlock& block = blocks.find(row(e).type, row(e).entity);
     block.tags.push_back(row(e).number);
     for (const Tag tag : nodes(e)) {
       const Index node = lookup.find(tag);
@@ -113,7 +74,7 @@ void ElementTable::fill(Mesh& mesh, const std::vector<std::uint64_t>& node_offse
       block.nodes.push_back(node);
     }
   }
-  add_groups(mesh, names);
+  mesh.groups = used_groups(mesh.blocks, names);
 }
 
 }  // namespace roughmesh::detail

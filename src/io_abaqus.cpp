@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "decimals.hpp"
 #include "fortran_real.hpp"
 #include "io_patch.hpp"
 
@@ -316,7 +317,7 @@ void Reader::finish_element() {
                                  "or the type is wrong",
                                  pending_[0], pending_.size() - 1, n_nodes));
   std::vector<Tag> nodes;
-  for (const int place : abaqus_node_order().in_file(type_.type))
+  for (const int place : abaqus_node_orders().in_file(type_.type))
     nodes.push_back(pending_[static_cast<std::size_t>(place) + 1]);
   elements_.add({type_.type, 0, pending_[0], pending_offset_}, nodes);
   sets_.add_element(type_.role, set_);

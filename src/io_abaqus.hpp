@@ -11,8 +11,8 @@
 
 #include "element_table.hpp"
 #include "file_formats.hpp"
+#include "node_orders.hpp"
 #include "scanner.hpp"
-#include "serendipity.hpp"
 #include "text.hpp"
 
 namespace roughmesh::detail {
@@ -44,7 +44,7 @@ struct AbaqusType {
 };
 /// @param name  in capitals
 std::optional<AbaqusType> abaqus_type(std::string_view name);
-const SerendipityOrder& abaqus_node_order();
+const NodeOrders& abaqus_node_orders();
 
 /// *ELSET, *SURFACE and the ELSET of *ELEMENT: kept as they are listed, applied at the end.
 class AbaqusSets {

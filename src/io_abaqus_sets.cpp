@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "element_nodes.hpp"
 #include "fortran_real.hpp"
 #include "io_abaqus.hpp"
 
@@ -39,11 +40,6 @@ std::span<const Loop> abaqus_faces(ElementShape shape) {
     default:
       return {};
   }
-}
-
-ElementShape shape_of_face(const Loop& corners) {
-  if (corners.size() == 2) return ElementShape::line;
-  return corners.size() == 3 ? ElementShape::triangle : ElementShape::quadrangle;
 }
 
 // "PART-1-1.TOP" is TOP of an instance of the part.
@@ -286,8 +282,9 @@ void AbaqusSets::add_face_element(const Face& face, Tag number) {
     const int middle = middle_node(row.type.shape, corners[k], corners[(k + 1) % corners.size()]);
     nodes.push_back(solid[static_cast<std::size_t>(middle)]);
   }
-  elements_->add({serendipity_type(shape_of_face(corners), row.type.order), 0, number, row.offset},
-                 nodes);
+  elements_->add(
+      {serendipity_type(shape_of_face(corners.size()), row.type.order), 0, number, row.offset},
+      nodes);
 }
 
 }  // namespace roughmesh::detail

@@ -62,12 +62,12 @@ constexpr std::array<std::string_view, 19> ignored = {
     "GK",   "DRAG3",   "SPHERE", "DISTRIBUTING", "PSI"};
 
 constexpr std::array second_order = {
-    SecondOrderNodes{ElementShape::line, "0 01 1"},
-    SecondOrderNodes{ElementShape::tetrahedron, "0 1 2 3 01 12 02 03 13 23"},
-    SecondOrderNodes{ElementShape::hexahedron,
-                     "0 1 2 3 4 5 6 7 01 12 23 03 45 56 67 47 04 15 26 37"},
-    SecondOrderNodes{ElementShape::prism, "0 1 2 3 4 5 01 12 02 34 45 35 03 14 25"},
-    SecondOrderNodes{ElementShape::pyramid, "0 1 2 3 4 01 12 23 03 04 14 24 34"},
+    NodeOrder{{ElementShape::line, 2, 3}, "0 01 1"},
+    NodeOrder{{ElementShape::tetrahedron, 2, 10}, "0 1 2 3 01 12 02 03 13 23"},
+    NodeOrder{{ElementShape::hexahedron, 2, 20},
+              "0 1 2 3 4 5 6 7 01 12 23 03 45 56 67 47 04 15 26 37"},
+    NodeOrder{{ElementShape::prism, 2, 15}, "0 1 2 3 4 5 01 12 02 34 45 35 03 14 25"},
+    NodeOrder{{ElementShape::pyramid, 2, 13}, "0 1 2 3 4 01 12 23 03 04 14 24 34"},
 };
 
 int n_nodes(const Family& family, int number) {
@@ -121,9 +121,9 @@ std::optional<AbaqusType> abaqus_type(std::string_view name) {
   return {};
 }
 
-const SerendipityOrder& abaqus_node_order() {
-  static const SerendipityOrder order(second_order);
-  return order;
+const NodeOrders& abaqus_node_orders() {
+  static const NodeOrders orders(second_order);
+  return orders;
 }
 
 }  // namespace roughmesh::detail

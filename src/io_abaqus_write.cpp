@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "decimals.hpp"
 #include "io_abaqus.hpp"
 #include "io_patch.hpp"
 #include "new_file.hpp"
@@ -13,12 +14,6 @@ namespace roughmesh::detail {
 namespace {
 
 constexpr Tag largest_number = 999'999'999;
-
-// In a plane of constant z without volumes, elements are those of plane stress.
-bool is_plane(const Mesh& mesh) {
-  return dimension(mesh) == 2 &&
-         std::all_of(mesh.nodes.begin(), mesh.nodes.end(), [](const Vec3& x) { return x[2] == 0; });
-}
 
 std::string type_name(const ElementType& type, bool plane) {
   const bool first = type.order == 1;
@@ -38,7 +33,7 @@ std::string type_name(const ElementType& type, bool plane) {
 
 // A name that may hold spaces and signs stands in quotes, which it cannot hold itself.
 std::string quoted_name(std::string name) {
-  std::erase_if(name, [](char c) { return c == '"' || (c >= 0 && c < ' '); });
+  std::erase_if(name, [](char c) { return c == '"'; });
   const bool is_plain = std::all_of(name.begin(), name.end(), [](char c) {
     return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_' ||
            c == '-';
@@ -51,9 +46,10 @@ std::vector<std::string> set_names(const Mesh& mesh) {
   std::set<std::pair<int, std::string>> taken;
   std::vector<std::string> names;
   for (const PhysicalGroup& group : mesh.groups) {
-    std::string name = quoted_name(group_label(group));
+    const std::string label = group_name(group, GroupNames::of_all_dimensions);
+    std::string name = quoted_name(label);
     if (!taken.emplace(group.dimension, upper(name)).second) {
-      name = quoted_name(fmt::format("{}_{}", group_label(group), group.tag));
+      name = quoted_name(fmt::format("{}_{}", label, group.tag));
       taken.emplace(group.dimension, upper(name));
     }
     names.push_back(std::move(name));
@@ -80,14 +76,14 @@ void write_list(const std::vector<Tag>& numbers, OutputFile& output) {
 }
 
 void write_blocks(const Mesh& mesh, const NewNumbers& numbers, OutputFile& output) {
-  const bool plane = is_plane(mesh);
+  const bool plane = is_plane(mesh);  // elements are those of plane stress
   for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
     const ElementBlock& block = mesh.blocks[b];
     if (block.size() == 0 || block.type.shape == ElementShape::point) continue;
     output.write(fmt::format("*ELEMENT, TYPE={}\n", type_name(block.type, plane)));
     for (Index e = 0; e < block.size(); ++e) {
       std::vector<Tag> line = {numbers.elements[b][static_cast<std::size_t>(e)]};
-      for (const int place : abaqus_node_order().in_gmsh(block.type))
+      for (const int place : abaqus_node_orders().in_gmsh(block.type))
         line.push_back(numbers.nodes[static_cast<std::size_t>(
             block.element(e)[static_cast<std::size_t>(place)])]);
       write_list(line, output);

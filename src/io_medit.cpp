@@ -8,37 +8,15 @@
 #include <cmath>
 #include <cstring>
 #include <map>
-#include <numeric>
 #include <optional>
 
 #include <fmt/format.h>
 
-#include "block_finder.hpp"
+#include "block_builder.hpp"
 #include "io_patch.hpp"
-#include "node_orders.hpp"
 #include "scanner.hpp"
 
 namespace roughmesh::detail {
-
-std::span<const MeditElements> medit_elements() {
-  using enum ElementShape;
-  const auto section = [](std::string_view keyword, int code, const NodeOrder& order) {
-    return MeditElements{keyword, code, order.type, places_in_gmsh_order(order)};
-  };
-  static const std::vector<MeditElements> table = {
-      section("Edges", 5, {.type = {line, 1, 2}}),
-      section("Triangles", 6, {.type = {triangle, 1, 3}}),
-      section("Quadrilaterals", 7, {.type = {quadrangle, 1, 4}}),
-      section("Tetrahedra", 8, {.type = {tetrahedron, 1, 4}}),
-      section("Prisms", 9, {.type = {prism, 1, 6}}),
-      section("Hexahedra", 10, {.type = {hexahedron, 1, 8}}),
-      section("Pyramids", 49, {.type = {pyramid, 1, 5}}),
-      section("EdgesP2", 25, {.type = {line, 2, 3}, .middles = "01"}),
-      section("TrianglesP2", 24, {.type = {triangle, 2, 6}, .middles = "01 12 20"}),
-      section("QuadrilateralsQ2", 27, {.type = {quadrangle, 2, 9}, .middles = "01 12 23 30 0123"}),
-      section("TetrahedraP2", 30, {.type = {tetrahedron, 2, 10}, .middles = "01 12 20 03 13 23"})};
-  return table;
-}
 
 namespace {
 
@@ -262,16 +240,16 @@ void read_vertices(MeditReader& reader) {
     reader.integer();  // reference
   }
   reader.finish();
-  reader.mesh.node_tags.resize(*n);
-  std::iota(reader.mesh.node_tags.begin(), reader.mesh.node_tags.end(), Tag{1});
+  number_nodes(reader.mesh);
 }
 
-void read_element(MeditReader& reader, const MeditElements& elements, BlockFinder& finder,
+void read_element(MeditReader& reader, const MeditElements& elements, BlockBuilder& blocks,
                   std::vector<Index>* corners) {
   std::array<Index, 10> nodes{};
   for (const int place : elements.places)
     nodes[static_cast<std::size_t>(place)] = reader.number(reader.mesh.n_nodes(), "vertex");
-  ElementBlock& block = finder.find(elements.type, 0, reader.integer());
+  blocks.set_group(reader.integer());
+  ElementBlock& block = blocks.find(elements.type);
   block.nodes.insert(block.nodes.end(), nodes.begin(), nodes.begin() + elements.type.n_nodes);
   block.tags.push_back(++reader.n_elements);
   if (corners != nullptr)
@@ -301,7 +279,7 @@ void read_elements(MeditReader& reader) {
   std::sort(present.begin(), present.end(), [&](const MeditElements* a, const MeditElements* b) {
     return reader.sections.at(a->keyword).offset < reader.sections.at(b->keyword).offset;
   });
-  BlockFinder finder(reader.mesh.blocks);
+  BlockBuilder blocks(reader.mesh.blocks);
   for (const MeditElements* const elements : present) {
     const MeditElements& rows = by_length_of_rows(reader, *elements);
     const auto n_numbers = static_cast<std::size_t>(rows.type.n_nodes) + 1;
@@ -311,16 +289,12 @@ void read_elements(MeditReader& reader) {
       corners = &reader.edges;
     if (rows.keyword == "Triangles" && reader.sections.contains("NormalAtTriangleVertices"))
       corners = &reader.triangles;
-    for (std::size_t i = 0; i < *n; ++i) read_element(reader, rows, finder, corners);
+    for (std::size_t i = 0; i < *n; ++i) read_element(reader, rows, blocks, corners);
     reader.finish();
   }
   reader.scanner.set_section("");
-  if (reader.n_elements == 0) reader.scanner.fail("no elements; save the mesh after meshing");
-  if (reader.n_elements > largest_index)
-    reader.scanner.refuse(
-        fmt::format("{} elements are more than the {} that roughmesh handles; split the mesh",
-                    reader.n_elements, largest_index));
-  list_used_groups(reader.mesh);
+  check_element_count(reader.scanner, reader.n_elements);
+  reader.mesh.groups = used_groups(reader.mesh.blocks);
 }
 
 // Normals or tangents, on no nodes yet.

@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Writes a mesh as Medit text or binary from its arrays.
-#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "io_medit.hpp"
+#include "new_file.hpp"
 #include "number_writer.hpp"
 
 namespace roughmesh::detail {
 namespace {
-
-Tag reference(const ElementBlock& block) {
-  return block.physical_groups.empty() ? 0 : block.physical_groups.front();
-}
 
 // Those with a section of the same shape in some order; points have none.
 bool is_lost(const ElementBlock& block) { return block.type.shape == ElementShape::point; }
@@ -31,7 +27,7 @@ class Writer {
   Writer(const Mesh& mesh, OutputFile& output, Encoding encoding)
       : mesh_(&mesh), numbers_(output, encoding) {
     for (const ElementBlock& block : mesh.blocks)
-      is_wide_ |= !std::in_range<std::int32_t>(reference(block));
+      is_wide_ |= !std::in_range<std::int32_t>(first_group(block));
   }
 
   void write_all() {
@@ -75,7 +71,7 @@ class Writer {
   void write_vertices() {
     begin("Vertices", medit_code::vertices, mesh_->n_nodes(), 24 + integer_bytes());
     for (const Vec3& x : mesh_->nodes) {
-      for (int k = 0; k < 3; ++k) numbers_.number(x[k]);
+      numbers_.vector(x);
       integer(0);
       numbers_.end_line();
     }
@@ -90,7 +86,7 @@ class Writer {
       for (Index i = 0; i < block.size(); ++i) {
         for (const int place : elements.places)
           integer(Tag{block.element(i)[static_cast<std::size_t>(place)]} + 1);
-        integer(reference(block));
+        integer(first_group(block));
         numbers_.end_line();
       }
     }
@@ -109,14 +105,6 @@ class Writer {
 };
 
 }  // namespace
-
-const MeditElements* medit_elements_of(const ElementType& type) {
-  const auto table = medit_elements();
-  const auto found = std::find_if(table.begin(), table.end(), [&](const MeditElements& elements) {
-    return elements.type == type;
-  });
-  return found == table.end() ? nullptr : &*found;
-}
 
 void check_for_medit(const Mesh& mesh, const std::filesystem::path& path) {
   bool has_elements = false;

@@ -2,7 +2,7 @@
 // MSH 2.2: nodes, elements and periodic links.
 #include <fmt/format.h>
 
-#include "block_finder.hpp"
+#include "block_builder.hpp"
 #include "file_formats.hpp"
 #include "io_msh.hpp"
 
@@ -25,25 +25,26 @@ Tag checked_tag(const Scanner& scanner, Tag tag) {
 }
 
 // The first tag is the physical group, the second the entity; what follows are partitions.
-ElementBlock& find_block(MshReader& reader, BlockFinder& finder, const ElementType& type,
+ElementBlock& find_block(MshReader& reader, BlockBuilder& blocks, const ElementType& type,
                          Tag n_tags) {
   Scanner& scanner = reader.scanner;
   const Tag group = n_tags > 0 ? reader.group(scanner.integer()) : 0;
   const Tag entity = n_tags > 1 ? scanner.integer() : 0;
   for (Tag i = 2; i < n_tags; ++i) scanner.integer();
-  return finder.find(type, entity, group);
+  blocks.set_group(group);
+  return blocks.find(type, entity);
 }
 
-void read_element(MshReader& reader, BlockFinder& finder, const ElementType& type, Tag number,
+void read_element(MshReader& reader, BlockBuilder& blocks, const ElementType& type, Tag number,
                   Tag n_tags) {
-  ElementBlock& block = find_block(reader, finder, type, n_tags);
+  ElementBlock& block = find_block(reader, blocks, type, n_tags);
   block.tags.push_back(checked_tag(reader.scanner, number));
   for (int i = 0; i < type.n_nodes; ++i)
     block.nodes.push_back(reader.node(reader.scanner.integer()));
 }
 
 // In text each element states its type; in binary a run of elements shares it.
-Tag read_run(MshReader& reader, BlockFinder& finder, Tag n_left) {
+Tag read_run(MshReader& reader, BlockBuilder& blocks, Tag n_left) {
   Scanner& scanner = reader.scanner;
   const bool is_text = reader.is_text();
   Tag number = is_text ? scanner.integer() : 0;
@@ -56,7 +57,7 @@ Tag read_run(MshReader& reader, BlockFinder& finder, Tag n_left) {
   scanner.count(n_tags, reader.least(sizeof(std::int32_t)), "tags");
   for (Tag i = 0; i < n; ++i) {
     if (!is_text) number = scanner.integer();
-    read_element(reader, finder, type, number, n_tags);
+    read_element(reader, blocks, type, number, n_tags);
   }
   return n;
 }
@@ -101,8 +102,8 @@ void read_msh2_elements(MshReader& reader) {
   const Tag n = read_count_line(reader);
   reader.check_element_count(n);
   reader.scanner.count(n, 8, "elements");  // "1 15 0 1\n", or a number and a node in binary
-  BlockFinder finder(reader.mesh.blocks);
-  for (Tag n_left = n; n_left > 0;) n_left -= read_run(reader, finder, n_left);
+  BlockBuilder blocks(reader.mesh.blocks);
+  for (Tag n_left = n; n_left > 0;) n_left -= read_run(reader, blocks, n_left);
   merge_copies_in_groups(reader.mesh.blocks);
 }
 

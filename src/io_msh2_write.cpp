@@ -57,7 +57,7 @@ class Writer {
     numbers_.text(fmt::format("$Nodes\n{}\n", mesh_->nodes.size()));
     for (std::size_t i = 0; i < mesh_->nodes.size(); ++i) {
       integer(mesh_->node_tags[i]);
-      for (int k = 0; k < 3; ++k) numbers_.number(mesh_->nodes[i][k]);
+      numbers_.vector(mesh_->nodes[i]);
       numbers_.end_line();
     }
     end("Nodes");
@@ -93,13 +93,21 @@ class Writer {
     numbers_.text(fmt::format("$Periodic\n{}\n", mesh_->periodic_links.size()));
     for (const PeriodicLink& link : mesh_->periodic_links) {
       numbers_.text(fmt::format("{} {} {}\n", link.dimension, link.entity, link.master_entity));
-      if (!link.affine.empty())
-        numbers_.text(fmt::format("Affine {}\n", fmt::join(link.affine, " ")));
+      if (!link.affine.empty()) write_affine(link.affine);
       numbers_.text(fmt::format("{}\n", link.nodes.size()));
       for (const auto& [slave, master] : link.nodes)
         numbers_.text(fmt::format("{} {}\n", mesh_->node_tags[slave], mesh_->node_tags[master]));
     }
     numbers_.text("$EndPeriodic\n");
+  }
+
+  void write_affine(const std::vector<double>& affine) {
+    std::string line = "Affine";
+    for (const double value : affine) {
+      line += ' ';
+      line += shortest(value);
+    }
+    numbers_.text(line + "\n");
   }
 
   const Mesh* mesh_;

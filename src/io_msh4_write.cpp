@@ -72,9 +72,6 @@ class Writer {
   void sizes(Values... values) {
     (numbers_.number(static_cast<std::uint64_t>(values)), ...);
   }
-  void reals(const Vec3& x) {
-    for (int k = 0; k < 3; ++k) numbers_.number(x[k]);
-  }
   void end_line() { numbers_.end_line(); }
   std::int32_t int32(Tag value) const {
     if (std::in_range<std::int32_t>(value)) return static_cast<std::int32_t>(value);
@@ -104,8 +101,8 @@ class Writer {
     for (const ElementBlock* block : entity.blocks)
       for (const Index node : block->nodes) box.extend(mesh_->nodes[node]);
     ints(entity.tag);
-    reals(box.min());
-    if (entity.dimension > 0) reals(box.max());
+    numbers_.vector(box.min());
+    if (entity.dimension > 0) numbers_.vector(box.max());
     sizes(entity.groups.size());
     for (const Tag group : entity.groups) ints(group);
     if (entity.dimension > 0) sizes(0);
@@ -125,7 +122,7 @@ class Writer {
     sizes(n);
     end_line();
     for (const Tag tag : mesh_->node_tags) sizes(tag), end_line();
-    for (const Vec3& x : mesh_->nodes) reals(x), end_line();
+    for (const Vec3& x : mesh_->nodes) numbers_.vector(x), end_line();
     end("Nodes");
   }
 

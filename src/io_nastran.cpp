@@ -52,11 +52,11 @@ constexpr std::array<std::string_view, 12> unread = {"CQUAD",   "CTRIAX",  "CTRI
                                                      "CTRIA",   "CHEXCZ",  "CPLSTN3", "CPLSTN4"};
 
 constexpr std::array second_order = {
-    SecondOrderNodes{ElementShape::tetrahedron, "0 1 2 3 01 12 02 03 13 23"},
-    SecondOrderNodes{ElementShape::hexahedron,
-                     "0 1 2 3 4 5 6 7 01 12 23 03 04 15 26 37 45 56 67 47"},
-    SecondOrderNodes{ElementShape::prism, "0 1 2 3 4 5 01 12 02 03 14 25 34 45 35"},
-    SecondOrderNodes{ElementShape::pyramid, "0 1 2 3 4 01 12 23 03 04 14 24 34"},
+    NodeOrder{{ElementShape::tetrahedron, 2, 10}, "0 1 2 3 01 12 02 03 13 23"},
+    NodeOrder{{ElementShape::hexahedron, 2, 20},
+              "0 1 2 3 4 5 6 7 01 12 23 03 04 15 26 37 45 56 67 47"},
+    NodeOrder{{ElementShape::prism, 2, 15}, "0 1 2 3 4 5 01 12 02 03 14 25 34 45 35"},
+    NodeOrder{{ElementShape::pyramid, 2, 13}, "0 1 2 3 4 01 12 23 03 04 14 24 34"},
 };
 
 const ElementCard* find_card(std::string_view name) {
@@ -190,7 +190,7 @@ void Reader::read_element(const BulkCard& card, const ElementCard& kind) {
   const std::size_t first = kind.has_property ? 3 : 2;
   const ElementType type = type_of(card, kind, first);
   std::vector<Tag> nodes;
-  for (const int place : nastran_node_order().in_file(type))
+  for (const int place : nastran_node_orders().in_file(type))
     nodes.push_back(number(card, first + static_cast<std::size_t>(place), "a node"));
   const Index element = elements_.add({type, property, tag, offset(card)}, nodes);
   if (property > 0) elements_.add_to_group(element, property);
@@ -248,9 +248,9 @@ bool is_nastran(std::string_view bytes, std::string_view extension) {
 
 }  // namespace
 
-const SerendipityOrder& nastran_node_order() {
-  static const SerendipityOrder order(second_order);
-  return order;
+const NodeOrders& nastran_node_orders() {
+  static const NodeOrders orders(second_order);
+  return orders;
 }
 
 const FileFormat nastran_format = {

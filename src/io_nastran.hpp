@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "file_formats.hpp"
+#include "node_orders.hpp"
 #include "scanner.hpp"
-#include "serendipity.hpp"
 
 namespace roughmesh::detail {
 
@@ -56,7 +56,7 @@ std::string nastran_real_16(double value);  ///< as many digits as 16 characters
 /// A unit of the last digit of nastran_real_16 for numbers of this size.
 double spacing_16(double value);
 
-const SerendipityOrder& nastran_node_order();
+const NodeOrders& nastran_node_orders();
 
 void write_patched_nastran(const Mesh& mesh, OutputFile& output);
 /// 0 where each GRID is in free fields, which hold all digits.

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "decimals.hpp"
 #include "fortran_real.hpp"
 #include "io_nastran.hpp"
 #include "io_patch.hpp"

@@ -133,19 +133,17 @@ class Properties {
  public:
   explicit Properties(const Mesh& mesh) {
     for (const PhysicalGroup& group : mesh.groups) add(group.dimension, group.tag);
-    for (const ElementBlock& block : mesh.blocks) add(dimension(block.type.shape), tag_of(block));
+    for (const ElementBlock& block : mesh.blocks)
+      add(dimension(block.type.shape), first_group(block));
   }
   Tag operator()(const ElementBlock& block) const {
-    return numbers_.at({dimension(block.type.shape), tag_of(block)});
+    return numbers_.at({dimension(block.type.shape), first_group(block)});
   }
   Tag operator()(const PhysicalGroup& group) const {
     return numbers_.at({group.dimension, group.tag});
   }
 
  private:
-  static Tag tag_of(const ElementBlock& block) {
-    return block.physical_groups.empty() ? 0 : block.physical_groups.front();
-  }
   void add(int dimension, Tag tag) {
     const auto [place, is_new] = numbers_.try_emplace({dimension, tag}, tag);
     if (!is_new) return;
@@ -196,17 +194,12 @@ void write_elements(const Mesh& mesh, const NewNumbers& numbers, const Propertie
     for (Index e = 0; e < block.size(); ++e) {
       std::vector<Tag> fields = {numbers.elements[b][static_cast<std::size_t>(e)],
                                  properties(block)};
-      for (const int place : nastran_node_order().in_gmsh(block.type))
+      for (const int place : nastran_node_orders().in_gmsh(block.type))
         fields.push_back(numbers.nodes[static_cast<std::size_t>(
             block.element(e)[static_cast<std::size_t>(place)])]);
       write_card(card_name(block.type), fields, output);
     }
   }
-}
-
-std::string printable_line(std::string name) {
-  std::erase_if(name, [](char c) { return c >= 0 && c < ' '; });
-  return name;
 }
 
 }  // namespace
@@ -246,8 +239,8 @@ void write_new_nastran(const Mesh& mesh, const WriteOptions&, OutputFile& output
   output.write("$ written by roughmesh\nBEGIN BULK\n");
   for (const PhysicalGroup& group : mesh.groups)
     if (!group.name.empty() && group.dimension > 0)
-      output.write(
-          fmt::format("$ Femap Property {} : {}\n", properties(group), printable_line(group.name)));
+      output.write(fmt::format("$ Femap Property {} : {}\n", properties(group),
+                               group_name(group, GroupNames::of_dimension)));
   for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
     const Vec3& x = mesh.nodes[i];
     output.write(fmt::format("GRID*   {:<16}{:<16}{:<16}{:<16}*\n*       {}\n", numbers.nodes[i], 0,

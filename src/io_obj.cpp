@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include "block_builder.hpp"
 
 namespace roughmesh::detail {
 namespace {
@@ -39,7 +42,6 @@ class ObjParser {
     if (content_.positions.empty()) scanner_.fail("no vertices; save the mesh again");
     require_known(vertices_);
     require_known(normals_);
-    content_.blocks = blocks_.take();
     if (content_.blocks.empty())
       scanner_.refuse("holds points but no faces; make a surface of them first");
     add_groups();
@@ -227,13 +229,9 @@ class ObjParser {
   }
 
   void add_groups() {
-    std::map<Tag, std::string_view> name_of;
+    std::map<Tag, std::string> name_of;
     for (const auto& [name, tag] : names_) name_of[tag] = name;
-    std::set<std::pair<int, Tag>> used;
-    for (const ElementBlock& block : content_.blocks)
-      for (const Tag tag : block.physical_groups) used.insert({dimension(block.type.shape), tag});
-    for (const auto& [dim, tag] : used)
-      content_.groups.push_back({dim, tag, std::string(name_of[tag])});
+    content_.groups = used_groups(content_.blocks, name_of);
   }
 
   std::size_t offset_of(std::string_view word) const {
@@ -245,7 +243,7 @@ class ObjParser {
   ObjContent content_;
   Numbering vertices_{"vertex"};
   Numbering normals_{"normal"};
-  BlockBuilder blocks_;
+  BlockBuilder blocks_{content_.blocks};
   std::map<std::string, Tag> names_;
   std::set<Tag> groups_;
   std::optional<Tag> object_;

@@ -4,8 +4,11 @@
 
 #include <fmt/format.h>
 
+#include "corner_normals.hpp"
 #include "io_obj.hpp"
 #include "io_patch.hpp"
+#include "new_file.hpp"
+#include "number_writer.hpp"
 
 namespace roughmesh::detail {
 namespace {
@@ -30,7 +33,7 @@ Replacement of_normal(std::uint64_t offset, const Vec3& normal) {
 void append_normals(const Mesh& mesh, std::vector<Replacement>& replacements) {
   const ObjContent content = parse_obj(mesh.source->file, true);
   const ObjCorners& corners = content.corners;
-  const std::vector<bool> moved = moved_nodes(mesh);
+  const std::vector<bool> moved = has_moved(mesh);
   CornerNormals sums(mesh.nodes, content.normals.size());
   std::vector<bool> is_stale(content.normals.size());
   std::size_t begin = 0;
@@ -38,7 +41,7 @@ void append_normals(const Mesh& mesh, std::vector<Replacement>& replacements) {
     const std::span nodes = std::span(corners.nodes).subspan(begin, end - begin);
     const std::span normals = std::span(corners.normals).subspan(begin, end - begin);
     begin = end;
-    sums.add_face(nodes, normals);
+    sums.add_face(nodes, normals, nodes.size());
     if (std::none_of(nodes.begin(), nodes.end(), [&](Index node) { return moved[node]; })) continue;
     for (const Index normal : normals)
       if (normal >= 0) is_stale[normal] = true;
@@ -91,7 +94,7 @@ class GroupWords {
 };
 
 const char* keyword(const ElementBlock& block) {
-  constexpr std::array words = {"p", "l", "f"};
+  constexpr std::array words = {"p ", "l ", "f "};
   return words[static_cast<std::size_t>(dimension(block.type.shape))];
 }
 
@@ -120,21 +123,22 @@ void check_obj(const Mesh& mesh, const std::filesystem::path& path) {
 void write_new_obj(const Mesh& mesh, const WriteOptions&, OutputFile& output) {
   const SurfacePart part(mesh, 0);
   const GroupWords words(mesh);
-  output.write("# written by roughmesh\n");
+  NumberWriter numbers(output, Encoding::text);
+  numbers.text("# written by roughmesh\n");
   for (const Index node : part.nodes) {
-    const Vec3& x = mesh.nodes[node];
-    output.write(fmt::format("v {} {} {}\n", x[0], x[1], x[2]));
+    numbers.text("v ");
+    numbers.vector(mesh.nodes[node]);
+    numbers.end_line();
   }
   std::string current = "g default\n";
   for (const ElementBlock* block : part.blocks) {
     std::string statement = words.statement(*block);
-    if (statement != current) output.write(statement);
+    if (statement != current) numbers.text(statement);
     current = std::move(statement);
     for (Index i = 0; i < block->size(); ++i) {
-      output.write(keyword(*block));
-      for (const Index node : block->element(i))
-        output.write(fmt::format(" {}", part.numbers[node] + 1));
-      output.write("\n");
+      numbers.text(keyword(*block));
+      for (const Index node : block->element(i)) numbers.number(part.numbers[node] + 1);
+      numbers.end_line();
     }
   }
 }

@@ -5,8 +5,11 @@
 
 #include <fmt/format.h>
 
+#include "block_builder.hpp"
+#include "corner_normals.hpp"
 #include "file_formats.hpp"
 #include "io_patch.hpp"
+#include "number_writer.hpp"
 #include "scanner.hpp"
 #include "surface_files.hpp"
 
@@ -122,7 +125,7 @@ class OffReader {
 
   void read_faces(std::size_t n) {
     scanner_.set_section("faces");
-    BlockBuilder blocks;
+    BlockBuilder blocks(mesh_.blocks);
     for (std::size_t i = 0; i < n; ++i) {
       skip_space_and_comments(scanner_);
       const Tag n_corners = scanner_.text_integer();
@@ -134,7 +137,6 @@ class OffReader {
       blocks.add_face(static_cast<Tag>(i) + 1,
                       {corners.data(), static_cast<std::size_t>(n_corners)});
     }
-    mesh_.blocks = blocks.take();
   }
 
   Scanner scanner_;
@@ -169,14 +171,15 @@ void write_patched_off(const Mesh& mesh, OutputFile& output) {
   Scanner scanner(source.file);
   skip_space_and_comments(scanner);
   if (!parse_kind(scanner.rest().substr(0, 32)).has_normals) return write_patched(mesh, output);
-  const NodeNormals normals(mesh);
+  const std::vector<bool> is_stale = is_at_moved_face(mesh);
+  const std::vector<Vec3> normals = node_normals(mesh, stored_positions(mesh));
   TriplePatcher patcher(source, output);
   for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
     if (!same_bits(source.positions[i], mesh.nodes[i]))
       patcher.replace(source.offsets[i], source.positions[i], mesh.nodes[i]);
-    if (!normals.is_stale[i]) continue;
+    if (!is_stale[i]) continue;
     if (const auto normal = normal_offset(scanner, source.offsets[i]))
-      patcher.replace(*normal, normals.normals[i]);
+      patcher.replace(*normal, normals[i]);
   }
   patcher.finish();
 }
@@ -187,17 +190,17 @@ void check_off(const Mesh& mesh, const std::filesystem::path& path) {
 
 void write_new_off(const Mesh& mesh, const WriteOptions&, OutputFile& output) {
   const SurfacePart part(mesh, 2);
-  output.write(fmt::format("OFF\n{} {} 0\n", part.nodes.size(), n_elements(part, 2)));
+  NumberWriter numbers(output, Encoding::text);
+  numbers.text(fmt::format("OFF\n{} {} 0\n", part.nodes.size(), n_elements(part, 2)));
   for (const Index node : part.nodes) {
-    const Vec3& x = mesh.nodes[node];
-    output.write(fmt::format("{} {} {}\n", x[0], x[1], x[2]));
+    numbers.vector(mesh.nodes[node]);
+    numbers.end_line();
   }
   for (const ElementBlock* block : part.blocks)
     for (Index i = 0; i < block->size(); ++i) {
-      output.write(fmt::format("{}", block->type.n_nodes));
-      for (const Index node : block->element(i))
-        output.write(fmt::format(" {}", part.numbers[node]));
-      output.write("\n");
+      numbers.number(block->type.n_nodes);
+      for (const Index node : block->element(i)) numbers.number(part.numbers[node]);
+      numbers.end_line();
     }
 }
 

@@ -2,12 +2,12 @@
 #include "io_patch.hpp"
 
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "decimals.hpp"
 #include "file_formats.hpp"
 #include "node_vectors.hpp"
 #include "scanner.hpp"
@@ -120,10 +120,11 @@ void TextPatcher::replace(std::string_view span, std::string_view text) {
 
 void TextPatcher::finish() { output_->write(source_->file.view().substr(position_)); }
 
-std::string shortest(double value) {
-  char text[32];
-  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
-  return {text, end};
+std::vector<bool> has_moved(const Mesh& mesh) {
+  std::vector<bool> moved(mesh.nodes.size());
+  for (std::size_t i = 0; i < moved.size(); ++i)
+    moved[i] = !same_bits(mesh.nodes[i], mesh.source->positions[i]);
+  return moved;
 }
 
 namespace {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "roughmesh/mesh.hpp"
 
@@ -16,6 +17,9 @@ namespace roughmesh::detail {
 /// Equal as bits: 0 and -0 differ, so that what was read is what is written.
 bool same_bits(double a, double b);
 bool same_bits(const Vec3& a, const Vec3& b);
+
+/// For each node, whether its position differs in bits from that in the source.
+std::vector<bool> has_moved(const Mesh& mesh);
 
 /// Replaces triples of numbers (pairs in a plane mesh), front to back; everything between them is
 /// copied.
@@ -76,8 +80,6 @@ void patch_moved_nodes(const Mesh& mesh, OutputFile& output, Replace replace) {
     if (!same_bits(mesh.source->positions[i], mesh.nodes[i])) replace(patcher, i);
   patcher.finish();
 }
-
-std::string shortest(double value);  ///< decimals that read back exactly
 
 /// The number that a format, or the source's own, holds for a value: nearest float32, or the value
 /// itself. Not inline: GCC 12 leaves the rounding out where it vectorizes conversions to float and

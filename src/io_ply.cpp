@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "block_builder.hpp"
 #include "surface_files.hpp"
 
 namespace roughmesh::detail {
@@ -37,7 +38,6 @@ class PlyReader {
     require_end();
     Mesh& mesh = mesh_;
     mesh.format = MeshFormat::ply;
-    mesh.blocks = blocks_.take();
     if (mesh.blocks.empty())
       scanner_->refuse("holds points but no faces; make a surface of them first");
     number_nodes(mesh);
@@ -156,7 +156,7 @@ class PlyReader {
       else
         skip_ply_property(*scanner_, property);
     }
-    set_group(group);
+    blocks_.set_group(group);
     blocks_.add_face(++n_elements_, {corners.data(), n});
   }
 
@@ -199,14 +199,8 @@ class PlyReader {
         skip_ply_property(*scanner_, property);
     }
     if (!has_ends) return;
-    set_group(group);
+    blocks_.set_group(group);
     blocks_.add(line_type, ++n_elements_, nodes);
-  }
-
-  void set_group(Tag group) {
-    if (group == group_) return;
-    group_ = group;
-    blocks_.set_groups(group == 0 ? std::vector<Tag>() : std::vector<Tag>{group});
   }
 
   // Bytes behind the last element mean that a count is wrong, unless an editor left line ends
@@ -222,8 +216,8 @@ class PlyReader {
   // Those of elements, with the names that comments give, and those that only comments name.
   void add_groups() {
     std::map<std::pair<int, Tag>, std::string> groups;
-    for (const ElementBlock& block : mesh_.blocks)
-      for (const Tag tag : block.physical_groups) groups[{dimension(block.type.shape), tag}];
+    for (const PhysicalGroup& group : used_groups(mesh_.blocks))
+      groups[{group.dimension, group.tag}];
     for (PhysicalGroup& group : header_.groups)
       groups[{group.dimension, group.tag}] = std::move(group.name);
     for (auto& [key, name] : groups)
@@ -237,8 +231,7 @@ class PlyReader {
   const PlyElement* edge_ = nullptr;
   Index n_nodes_ = 0;
   Mesh mesh_;
-  BlockBuilder blocks_;
-  Tag group_ = 0;
+  BlockBuilder blocks_{mesh_.blocks};
   Tag n_elements_ = 0;
 };
 

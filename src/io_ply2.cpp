@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "block_builder.hpp"
 #include "file_formats.hpp"
 #include "scanner.hpp"
 #include "surface_files.hpp"
@@ -35,10 +36,9 @@ void read_face(Scanner& scanner, Tag number, Index n_nodes, BlockBuilder& blocks
 }
 
 void read_faces(Scanner& scanner, std::size_t n, Mesh& mesh) {
-  BlockBuilder blocks;
+  BlockBuilder blocks(mesh.blocks);
   for (std::size_t i = 0; i < n; ++i)
     read_face(scanner, static_cast<Tag>(i) + 1, mesh.n_nodes(), blocks);
-  mesh.blocks = blocks.take();
 }
 
 Mesh read_ply2(FileBytes file) {

@@ -6,8 +6,11 @@
 
 #include <fmt/format.h>
 
+#include "corner_normals.hpp"
 #include "io_patch.hpp"
 #include "io_ply.hpp"
+#include "new_file.hpp"
+#include "number_writer.hpp"
 #include "surface_files.hpp"
 
 namespace roughmesh::detail {
@@ -46,37 +49,6 @@ void patch_vertex(Scanner& scanner, const PlyElement& vertex, const PlyVertexLay
   }
 }
 
-std::string_view little_endian(auto& value) {
-  if constexpr (std::endian::native == std::endian::big) value = reverse_bytes(value);
-  return {reinterpret_cast<const char*>(&value), sizeof value};
-}
-
-// The numbers of one element: a line of text or their bytes.
-class Row {
- public:
-  Row(OutputFile& output, Encoding encoding)
-      : output_(&output), is_text_(encoding == Encoding::text) {}
-
-  template <typename T>
-  void add(T value) {
-    if (is_text_)
-      fmt::format_to(std::back_inserter(text_), "{}{}", text_.size() == 0 ? "" : " ", value);
-    else
-      output_->write(little_endian(value));
-  }
-  void end() {
-    if (!is_text_) return;
-    text_.push_back('\n');
-    output_->write({text_.data(), text_.size()});
-    text_.clear();
-  }
-
- private:
-  OutputFile* output_;
-  bool is_text_;
-  fmt::memory_buffer text_;
-};
-
 // Names of properties are single words, and no two of them may be equal.
 class PropertyNames {
  public:
@@ -101,10 +73,6 @@ std::string component_name(const PointField& field, int k) {
   return fmt::format("{}_{}", field.name, letters[axis]);
 }
 
-Tag group_of(const ElementBlock& block) {
-  return block.physical_groups.empty() ? 0 : block.physical_groups.front();
-}
-
 class PlyWriter {
  public:
   PlyWriter(const Mesh& mesh, const WriteOptions& options, OutputFile& output)
@@ -113,8 +81,9 @@ class PlyWriter {
         output_(&output),
         part_(mesh, 1),
         encoding_(options.encoding.value_or(Encoding::binary)),
-        has_groups_(std::any_of(part_.blocks.begin(), part_.blocks.end(),
-                                [](const ElementBlock* block) { return group_of(*block) != 0; })) {}
+        has_groups_(
+            std::any_of(part_.blocks.begin(), part_.blocks.end(),
+                        [](const ElementBlock* block) { return first_group(*block) != 0; })) {}
 
   void write() {
     write_header();
@@ -135,7 +104,7 @@ class PlyWriter {
     for (const PhysicalGroup& group : mesh_->groups)
       if (!group.name.empty() && group.dimension >= 1 && group.dimension <= 2)
         text("comment {} {} {} {}\n", ply_group, group.dimension, group.tag,
-             group_name(*mesh_, group.dimension, group.tag));
+             group_name(group, GroupNames::of_dimension));
     text("element vertex {}\n", part_.nodes.size());
     for (const char axis : {'x', 'y', 'z'}) text("property double {}\n", axis);
     write_field_names();
@@ -159,27 +128,27 @@ class PlyWriter {
   }
 
   void write_vertices() {
-    Row row(*output_, encoding_);
+    NumberWriter row(*output_, encoding_, std::endian::little);
     for (const Index node : part_.nodes) {
-      for (const double x : mesh_->nodes[node]) row.add(x);
+      row.vector(mesh_->nodes[node]);
       for (const PointField& field : options_->fields) {
         const auto n = static_cast<std::size_t>(field.n_components);
         for (std::size_t k = 0; k < n; ++k)
-          row.add(field.values[static_cast<std::size_t>(node) * n + k]);
+          row.number(field.values[static_cast<std::size_t>(node) * n + k]);
       }
-      row.end();
+      row.end_line();
     }
   }
 
   void write_elements(int dim) {
-    Row row(*output_, encoding_);
+    NumberWriter row(*output_, encoding_, std::endian::little);
     for (const ElementBlock* block : part_.blocks) {
       if (dimension(block->type.shape) != dim) continue;
       for (Index i = 0; i < block->size(); ++i) {
-        if (dim == 2) row.add(static_cast<std::uint8_t>(block->type.n_nodes));
-        for (const Index node : block->element(i)) row.add(std::int32_t{part_.numbers[node]});
-        if (has_groups_) row.add(static_cast<std::int32_t>(group_of(*block)));
-        row.end();
+        if (dim == 2) row.number(static_cast<std::uint8_t>(block->type.n_nodes));
+        for (const Index node : block->element(i)) row.number(std::int32_t{part_.numbers[node]});
+        if (has_groups_) row.number(static_cast<std::int32_t>(first_group(*block)));
+        row.end_line();
       }
     }
   }
@@ -200,17 +169,19 @@ void write_patched_ply(const Mesh& mesh, OutputFile& output) {
   const PlyHeader header = read_ply_header(scanner);
   const PlyElement& vertex = *header.find("vertex");
   const PlyVertexLayout layout(vertex);
-  std::optional<NodeNormals> normals;
-  if (layout.has_normals) normals.emplace(mesh);
+  std::vector<Vec3> normals;
+  std::vector<bool> is_stale(mesh.nodes.size());
+  if (layout.has_normals) {
+    normals = node_normals(mesh, stored_positions(mesh));
+    is_stale = is_at_moved_face(mesh);
+  }
   TriplePatcher patcher(source, output);
   for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
-    const bool has_normal = normals && normals->is_stale[i];
-    if (!has_normal && same_bits(source.positions[i], mesh.nodes[i])) continue;
+    if (!is_stale[i] && same_bits(source.positions[i], mesh.nodes[i])) continue;
     scanner.move_to(source.offsets[i]);
-    patch_vertex(
-        scanner, vertex, layout,
-        {&source.positions[i], &mesh.nodes[i], has_normal ? &normals->normals[i] : nullptr},
-        patcher);
+    patch_vertex(scanner, vertex, layout,
+                 {&source.positions[i], &mesh.nodes[i], is_stale[i] ? &normals[i] : nullptr},
+                 patcher);
   }
   patcher.finish();
 }
@@ -218,7 +189,7 @@ void write_patched_ply(const Mesh& mesh, OutputFile& output) {
 void check_ply(const Mesh& mesh, const std::filesystem::path& path) {
   check_surface_part(mesh, path, 1);
   for (const ElementBlock* block : SurfacePart(mesh, 1).blocks) {
-    const Tag group = group_of(*block);
+    const Tag group = first_group(*block);
     if (group != static_cast<std::int32_t>(group))
       throw InputError(
           fmt::format("{}: the group number {} does not fit into the 32 bits of a PLY "

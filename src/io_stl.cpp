@@ -8,9 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "block_builder.hpp"
 #include "coincident.hpp"
 #include "scanner.hpp"
-#include "surface_files.hpp"
 
 namespace roughmesh::detail {
 namespace {

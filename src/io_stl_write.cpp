@@ -9,6 +9,8 @@
 
 #include "io_patch.hpp"
 #include "io_stl.hpp"
+#include "new_file.hpp"
+#include "number_writer.hpp"
 #include "scanner.hpp"
 #include "surface_files.hpp"
 
@@ -51,14 +53,17 @@ std::int64_t n_triangles(const SurfacePart& part) {
 
 class StlWriter {
  public:
-  StlWriter(const Mesh& mesh, OutputFile& output)
-      : mesh_(&mesh), output_(&output), part_(mesh, 2) {}
+  StlWriter(const Mesh& mesh, Encoding encoding, OutputFile& output)
+      : mesh_(&mesh),
+        output_(&output),
+        numbers_(output, encoding, std::endian::little),
+        part_(mesh, 2) {}
 
   void write_binary() {
     std::string header = "written by roughmesh";  // not "solid"
     header.resize(stl_header_bytes, ' ');
-    output_->write(header);
-    write_bytes(static_cast<std::uint32_t>(n_triangles(part_)));
+    numbers_.text(header);
+    numbers_.number(static_cast<std::uint32_t>(n_triangles(part_)));
     for (const ElementBlock* block : part_.blocks)
       for_each_triangle(*block, [&](const Triangle& corners) { write_bytes_of(corners); });
   }
@@ -68,7 +73,7 @@ class StlWriter {
     std::vector<std::pair<Tag, std::vector<const ElementBlock*>>> solids;
     std::map<Tag, std::size_t> places;
     for (const ElementBlock* block : part_.blocks) {
-      const Tag group = block->physical_groups.empty() ? 0 : block->physical_groups.front();
+      const Tag group = first_group(*block);
       const auto [place, is_new] = places.try_emplace(group, solids.size());
       if (is_new) solids.push_back({group, {}});
       solids[place->second].second.push_back(block);
@@ -84,16 +89,10 @@ class StlWriter {
         action({mesh_->nodes[t[0]], mesh_->nodes[t[1]], mesh_->nodes[t[2]]});
   }
 
-  template <typename T>
-  void write_bytes(T value) {
-    if constexpr (std::endian::native == std::endian::big) value = reverse_bytes(value);
-    output_->write({reinterpret_cast<const char*>(&value), sizeof value});
-  }
-
   void write_bytes_of(const Triangle& exact) {
     const Triangle corners = stored(NumberFormat::float32, exact);
     const auto write = [&](const Vec3& x) {
-      for (const double c : x) write_bytes(static_cast<float>(c));
+      for (const double c : x) numbers_.number(static_cast<float>(c));
     };
     write(normal_of(corners));
     for (const Vec3& corner : corners) {
@@ -102,28 +101,33 @@ class StlWriter {
                                      output_->path().string()));
       write(corner);
     }
-    write_bytes(std::uint16_t{0});
+    numbers_.number(std::uint16_t{0});
   }
 
   void write_solid(Tag group, const std::vector<const ElementBlock*>& blocks) {
     const std::string name = group == 0 ? "" : fmt::format(" {}", group_name(*mesh_, 2, group));
-    output_->write(fmt::format("solid{}\n", name));
+    numbers_.text(fmt::format("solid{}\n", name));
     for (const ElementBlock* block : blocks)
       for_each_triangle(*block, [&](const Triangle& corners) { write_text_of(corners); });
-    output_->write(fmt::format("endsolid{}\n", name));
+    numbers_.text(fmt::format("endsolid{}\n", name));
   }
 
   void write_text_of(const Triangle& corners) {
-    const Vec3 normal = normal_of(corners);
-    output_->write(
-        fmt::format("facet normal {} {} {}\n  outer loop\n", normal[0], normal[1], normal[2]));
-    for (const Vec3& x : corners)
-      output_->write(fmt::format("    vertex {} {} {}\n", x[0], x[1], x[2]));
-    output_->write("  endloop\nendfacet\n");
+    write_vector("facet normal ", normal_of(corners));
+    numbers_.text("  outer loop\n");
+    for (const Vec3& x : corners) write_vector("    vertex ", x);
+    numbers_.text("  endloop\nendfacet\n");
+  }
+
+  void write_vector(std::string_view words, const Vec3& x) {
+    numbers_.text(words);
+    numbers_.vector(x);
+    numbers_.end_line();
   }
 
   const Mesh* mesh_;
   OutputFile* output_;
+  NumberWriter numbers_;
   SurfacePart part_;
 };
 
@@ -152,8 +156,9 @@ void check_stl(const Mesh& mesh, const std::filesystem::path& path) {
 }
 
 void write_new_stl(const Mesh& mesh, const WriteOptions& options, OutputFile& output) {
-  StlWriter writer(mesh, output);
-  if (options.encoding == Encoding::text)
+  const Encoding encoding = options.encoding.value_or(Encoding::binary);
+  StlWriter writer(mesh, encoding, output);
+  if (encoding == Encoding::text)
     writer.write_text();
   else
     writer.write_binary();

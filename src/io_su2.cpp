@@ -6,12 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numeric>
 #include <optional>
 
 #include <fmt/format.h>
 
-#include "block_finder.hpp"
+#include "block_builder.hpp"
 #include "scanner.hpp"
 
 namespace roughmesh::detail {
@@ -192,8 +191,7 @@ void read_points(Su2Reader& reader) {
     for (Tag k = 0; k < reader.dimension; ++k) x[k] = scanner.text_real();
     line.finish(2);  // its number, and that in the undivided mesh
   }
-  reader.mesh.node_tags.resize(n);
-  std::iota(reader.mesh.node_tags.begin(), reader.mesh.node_tags.end(), Tag{1});
+  number_nodes(reader.mesh);
 }
 
 const Su2Element& read_type(Su2Reader& reader) {
@@ -204,7 +202,7 @@ const Su2Element& read_type(Su2Reader& reader) {
       fmt::format("element type {} is none of SU2's (3, 5, 9, 10, 12, 13, 14)", number));
 }
 
-void read_element(Su2Reader& reader, BlockFinder& finder, Tag group, int dim) {
+void read_element(Su2Reader& reader, BlockBuilder& blocks, int dim) {
   Scanner& scanner = reader.scanner;
   Line line(scanner);
   const Su2Element& element = read_type(reader);
@@ -214,7 +212,7 @@ void read_element(Su2Reader& reader, BlockFinder& finder, Tag group, int dim) {
   if (found != dim)
     scanner.fail(fmt::format("a {} where elements of dimension {} stand: the file is damaged",
                              name(element.type), dim));
-  ElementBlock& block = finder.find(element.type, 0, group);
+  ElementBlock& block = blocks.find(element.type);
   for (int k = 0; k < element.type.n_nodes; ++k) {
     const Tag node = scanner.text_integer();
     if (node < 0 || node >= reader.mesh.n_nodes())
@@ -226,14 +224,15 @@ void read_element(Su2Reader& reader, BlockFinder& finder, Tag group, int dim) {
   line.finish(1);
 }
 
-void read_elements(Su2Reader& reader, BlockFinder& finder, const Section& section, Tag group,
+void read_elements(Su2Reader& reader, BlockBuilder& blocks, const Section& section, Tag group,
                    int dim) {
   reader.scanner.move_to(section.offset);
-  for (Tag i = 0; i < section.n; ++i) read_element(reader, finder, group, dim);
+  blocks.set_group(group);
+  for (Tag i = 0; i < section.n; ++i) read_element(reader, blocks, dim);
 }
 
 // Markers of one name are one group; it has the number of the first.
-void read_markers(Su2Reader& reader, BlockFinder& finder) {
+void read_markers(Su2Reader& reader, BlockBuilder& blocks) {
   const int dim = static_cast<int>(reader.dimension) - 1;
   std::map<std::string_view, Tag> groups;
   for (std::size_t i = 0; i < reader.markers.size(); ++i) {
@@ -243,7 +242,7 @@ void read_markers(Su2Reader& reader, BlockFinder& finder) {
         groups.try_emplace(marker.name, static_cast<Tag>(groups.size()) + 1);
     if (is_new) reader.mesh.groups.push_back({dim, group->second, marker.name});
     reader.scanner.set_section(marker.name);
-    read_elements(reader, finder, marker.elements, group->second, dim);
+    read_elements(reader, blocks, marker.elements, group->second, dim);
   }
 }
 
@@ -252,15 +251,11 @@ void read_all(Su2Reader& reader) {
   check_complete(reader);
   read_points(reader);
   reader.scanner.set_section("NELEM");
-  BlockFinder finder(reader.mesh.blocks);
-  read_elements(reader, finder, *reader.elements, 0, static_cast<int>(reader.dimension));
-  read_markers(reader, finder);
+  BlockBuilder blocks(reader.mesh.blocks);
+  read_elements(reader, blocks, *reader.elements, 0, static_cast<int>(reader.dimension));
+  read_markers(reader, blocks);
   reader.scanner.set_section("");
-  if (reader.n_elements == 0) reader.scanner.fail("no elements; save the mesh after meshing");
-  if (reader.n_elements > largest_index)
-    reader.scanner.refuse(
-        fmt::format("{} elements are more than the {} that roughmesh handles; split the mesh",
-                    reader.n_elements, largest_index));
+  check_element_count(reader.scanner, reader.n_elements);
 }
 
 // The first line that is no comment begins with NDIME or NZONE, or the file is called so.

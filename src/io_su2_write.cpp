@@ -8,14 +8,11 @@
 #include <fmt/format.h>
 
 #include "io_su2.hpp"
+#include "new_file.hpp"
 #include "number_writer.hpp"
 
 namespace roughmesh::detail {
 namespace {
-
-bool is_plane(const Mesh& mesh) {
-  return std::all_of(mesh.nodes.begin(), mesh.nodes.end(), [](const Vec3& x) { return x[2] == 0; });
-}
 
 int su2_number(const ElementType& type) {
   for (const Su2Element& element : su2_elements())
@@ -29,17 +26,14 @@ BlocksOfMarker blocks_of_markers(const Mesh& mesh, int dim) {
   BlocksOfMarker markers;
   for (const ElementBlock& block : mesh.blocks)
     if (block.size() > 0 && dimension(block.type.shape) == dim)
-      markers[block.physical_groups.empty() ? 0 : block.physical_groups.front()].push_back(&block);
+      markers[first_group(block)].push_back(&block);
   return markers;
 }
 
 // SU2 ends a name at a space. Elements in no group need a marker all the same.
 std::string marker_name(const Mesh& mesh, int dim, Tag group) {
   if (group == 0) return "no_group";
-  std::string text;
-  for (const PhysicalGroup& each : mesh.groups)
-    if (each.dimension == dim && each.tag == group) text = each.name;
-  if (text.empty()) return fmt::format("group_{}", group);
+  std::string text = group_name(mesh, dim, group);
   for (char& c : text)
     if (is_space(c) || c == '%' || c == '=') c = '_';
   return text;

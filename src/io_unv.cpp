@@ -168,7 +168,7 @@ void Reader::read_element(const std::vector<Tag>& head, bool has_bins) {
   const std::vector<Tag> nodes = read_node_numbers(scanner_.count(n_nodes, 2, "nodes"));
   if (type.is_ignored) return;
   std::vector<Tag> in_order;
-  for (const int place : unv_node_order().in_file(type.type))
+  for (const int place : unv_node_orders().in_file(type.type))
     in_order.push_back(nodes[static_cast<std::size_t>(place)]);
   elements_.add({type.type, property, tag, start}, in_order);
 }

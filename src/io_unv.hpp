@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "file_formats.hpp"
-#include "serendipity.hpp"
+#include "node_orders.hpp"
 
 namespace roughmesh::detail {
 
@@ -21,7 +21,7 @@ struct UnvType {
 UnvType unv_type(Tag descriptor);
 /// The descriptor of new elements; 0 where the format has none.
 int unv_descriptor(const ElementType& type, bool is_plane);
-const SerendipityOrder& unv_node_order();
+const NodeOrders& unv_node_orders();
 
 void check_unv(const Mesh& mesh, const std::filesystem::path& path);
 void write_new_unv(const Mesh& mesh, const WriteOptions& options, OutputFile& output);

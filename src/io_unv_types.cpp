@@ -33,13 +33,13 @@ constexpr std::array descriptors = {
 
 // Around each ring of edges, corners and middles in turn.
 constexpr std::array second_order = {
-    SecondOrderNodes{ElementShape::line, "0 01 1"},
-    SecondOrderNodes{ElementShape::triangle, "0 01 1 12 2 02"},
-    SecondOrderNodes{ElementShape::quadrangle, "0 01 1 12 2 23 3 03"},
-    SecondOrderNodes{ElementShape::tetrahedron, "0 01 1 12 2 02 03 13 23 3"},
-    SecondOrderNodes{ElementShape::prism, "0 01 1 12 2 02 03 14 25 3 34 4 45 5 35"},
-    SecondOrderNodes{ElementShape::hexahedron,
-                     "0 01 1 12 2 23 3 03 04 15 26 37 4 45 5 56 6 67 7 47"},
+    NodeOrder{{ElementShape::line, 2, 3}, "0 01 1"},
+    NodeOrder{{ElementShape::triangle, 2, 6}, "0 01 1 12 2 02"},
+    NodeOrder{{ElementShape::quadrangle, 2, 8}, "0 01 1 12 2 23 3 03"},
+    NodeOrder{{ElementShape::tetrahedron, 2, 10}, "0 01 1 12 2 02 03 13 23 3"},
+    NodeOrder{{ElementShape::prism, 2, 15}, "0 01 1 12 2 02 03 14 25 3 34 4 45 5 35"},
+    NodeOrder{{ElementShape::hexahedron, 2, 20},
+              "0 01 1 12 2 23 3 03 04 15 26 37 4 45 5 56 6 67 7 47"},
 };
 
 constexpr int first_ignored = 121;
@@ -65,9 +65,9 @@ int unv_descriptor(const ElementType& type, bool is_plane) {
   return 0;
 }
 
-const SerendipityOrder& unv_node_order() {
-  static const SerendipityOrder order(second_order);
-  return order;
+const NodeOrders& unv_node_orders() {
+  static const NodeOrders orders(second_order);
+  return orders;
 }
 
 }  // namespace roughmesh::detail

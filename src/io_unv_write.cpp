@@ -14,11 +14,6 @@ namespace {
 
 constexpr Tag largest_number = std::numeric_limits<std::int32_t>::max();  // ten characters
 
-bool is_plane(const Mesh& mesh) {
-  return dimension(mesh) == 2 &&
-         std::all_of(mesh.nodes.begin(), mesh.nodes.end(), [](const Vec3& x) { return x[2] == 0; });
-}
-
 // Fields of ten characters, eight to a line.
 void write_numbers(const std::vector<Tag>& numbers, OutputFile& output) {
   std::string text;
@@ -53,7 +48,7 @@ void write_elements(const Mesh& mesh, const NewNumbers& numbers, OutputFile& out
                     output);
       if (block.type.shape == ElementShape::line) write_numbers({0, 0, 0}, output);
       std::vector<Tag> nodes;
-      for (const int place : unv_node_order().in_gmsh(block.type))
+      for (const int place : unv_node_orders().in_gmsh(block.type))
         nodes.push_back(numbers.nodes[static_cast<std::size_t>(
             block.element(e)[static_cast<std::size_t>(place)])]);
       write_numbers(nodes, output);
@@ -76,11 +71,6 @@ std::vector<Tag> group_numbers(const Mesh& mesh) {
   return numbers;
 }
 
-std::string one_line(std::string name) {
-  std::erase_if(name, [](char c) { return c >= 0 && c < ' '; });
-  return name;
-}
-
 void write_groups(const Mesh& mesh, const NewNumbers& numbers, OutputFile& output) {
   const std::vector<Tag> group_number = group_numbers(mesh);
   auto blocks = blocks_of_groups(mesh);
@@ -93,7 +83,7 @@ void write_groups(const Mesh& mesh, const NewNumbers& numbers, OutputFile& outpu
     if (entities.empty() || mesh.groups[g].dimension == 0) continue;
     write_numbers({group_number[g], 0, 0, 0, 0, 0, 0, static_cast<Tag>(entities.size() / 4)},
                   output);
-    output.write(one_line(group_label(mesh.groups[g])) + "\n");
+    output.write(group_name(mesh.groups[g], GroupNames::of_all_dimensions) + "\n");
     write_numbers(entities, output);
   }
   output.write("    -1\n");

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "io_vtk.hpp"
+#include "new_file.hpp"
 #include "number_writer.hpp"
 #include "vtk_cells.hpp"
 
@@ -45,7 +46,7 @@ class Writer {
   void write_points() {
     numbers_.text(fmt::format("POINTS {} double\n", mesh_->nodes.size()));
     for (const Vec3& x : mesh_->nodes) {
-      for (int k = 0; k < 3; ++k) numbers_.number(x[k]);
+      numbers_.vector(x);
       numbers_.end_line();
     }
     end_numbers();
@@ -82,9 +83,7 @@ class Writer {
   void write_cell_data() {
     numbers_.text(fmt::format("CELL_DATA {}\n", n_elements(*mesh_)));
     write_scalars("entity", [](const ElementBlock& block) { return block.entity; });
-    write_scalars("physical_group", [](const ElementBlock& block) {
-      return block.physical_groups.empty() ? 0 : block.physical_groups.front();
-    });
+    write_scalars("physical_group", first_group);
   }
 
   // As int where all fit, because "long" has no fixed size and not all readers know vtktypeint64.

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "file_formats.hpp"
+#include "new_file.hpp"
 #include "vtk_cells.hpp"
 
 namespace roughmesh::detail {
@@ -129,9 +130,7 @@ void write_arrays(OutputFile& output, const Mesh& mesh, const Sizes& n) {
   });
   write_cells<std::int64_t>(output, mesh, cell_bytes,
                             [](const ElementBlock& block) { return block.entity; });
-  write_cells<std::int64_t>(output, mesh, cell_bytes, [](const ElementBlock& block) {
-    return block.physical_groups.empty() ? 0 : block.physical_groups.front();
-  });
+  write_cells<std::int64_t>(output, mesh, cell_bytes, first_group);
 }
 
 void write_vtu(const Mesh& mesh, const WriteOptions& options, OutputFile& output) {

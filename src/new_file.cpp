@@ -8,7 +8,7 @@
 
 #include "roughmesh/error.hpp"
 
-#include "serendipity.hpp"
+#include "node_orders.hpp"
 
 namespace roughmesh::detail {
 namespace {
@@ -37,9 +37,32 @@ NewNumbers new_numbers(const Mesh& mesh, Tag largest) {
   return numbers;
 }
 
-std::string group_label(const PhysicalGroup& group) {
-  if (!group.name.empty()) return group.name;
-  return fmt::format("GROUP_{}_{}", group.dimension, group.tag);
+Tag first_group(const ElementBlock& block) {
+  return block.physical_groups.empty() ? 0 : block.physical_groups.front();
+}
+
+std::string group_name(const PhysicalGroup& group, GroupNames names) {
+  if (group.name.empty())
+    return names == GroupNames::of_dimension
+               ? fmt::format("group_{}", group.tag)
+               : fmt::format("GROUP_{}_{}", group.dimension, group.tag);
+  std::string text = group.name;
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 32 || c == 127) c = ' ';
+  return text;
+}
+
+std::string group_name(const Mesh& mesh, int dimension, Tag tag) {
+  const auto group = std::find_if(
+      mesh.groups.begin(), mesh.groups.end(),
+      [&](const PhysicalGroup& each) { return each.dimension == dimension && each.tag == tag; });
+  return group_name(group != mesh.groups.end() ? *group : PhysicalGroup{dimension, tag, ""},
+                    GroupNames::of_dimension);
+}
+
+bool is_plane(const Mesh& mesh) {
+  return dimension(mesh) == 2 &&
+         std::all_of(mesh.nodes.begin(), mesh.nodes.end(), [](const Vec3& x) { return x[2] == 0; });
 }
 
 std::map<std::pair<int, Tag>, std::vector<std::size_t>> blocks_of_groups(const Mesh& mesh) {

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <bit>
-#include <charconv>
 #include <string_view>
 
+#include "roughmesh/mesh.hpp"
+
+#include "decimals.hpp"
 #include "output_file.hpp"
 #include "scanner.hpp"
 
@@ -30,6 +32,10 @@ class NumberWriter {
     output_->write({reinterpret_cast<const char*>(&value), sizeof value});
   }
 
+  void vector(const Vec3& x) {
+    for (int k = 0; k < 3; ++k) number(x[k]);
+  }
+
   void end_line() {  ///< in text only
     if (is_text()) output_->write("\n");
     is_line_start_ = true;
@@ -38,9 +44,9 @@ class NumberWriter {
  private:
   template <typename T>
   void decimal(T value) {
-    char digits[32];
+    char digits[1 + most_decimals];
     digits[0] = ' ';
-    const auto [end, error] = std::to_chars(digits + 1, digits + sizeof digits, value);
+    const char* const end = write_decimals(value, digits + 1);
     const char* const start = is_line_start_ ? digits + 1 : digits;
     output_->write({start, static_cast<std::size_t>(end - start)});
     is_line_start_ = false;

@@ -2,56 +2,18 @@
 #include "surface_files.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
 
 #include <fmt/format.h>
 
-#include "io_patch.hpp"
-
 namespace roughmesh::detail {
 namespace {
-
-bool is_surface(const ElementBlock& block) { return dimension(block.type.shape) == 2; }
 
 bool is_held(const ElementBlock& block, int least_dimension) {
   const int dim = dimension(block.type.shape);
   return block.size() > 0 && dim >= least_dimension && dim <= 2;
 }
 
-double largest_extent(const std::vector<Vec3>& positions) {
-  Eigen::AlignedBox3d box;
-  for (const Vec3& x : positions) box.extend(x);
-  return positions.empty() ? 0 : box.sizes().maxCoeff();
-}
-
-// Corner with the edges that leave it, next and previous (docs/math.md, eq. 2).
-Vec3 max_weighted(const Vec3& next, const Vec3& previous) {
-  const double squares = next.squaredNorm() * previous.squaredNorm();
-  return squares > 0 ? Vec3(next.cross(previous) / squares) : Vec3::Zero();
-}
-
 }  // namespace
-
-void BlockBuilder::set_groups(std::vector<Tag> groups) {
-  if (groups == groups_) return;
-  groups_ = std::move(groups);
-  current_.fill(none);
-}
-
-std::size_t BlockBuilder::find_block(const ElementType& type) {
-  const auto [place, is_new] = places_.try_emplace({type.shape, groups_}, blocks_.size());
-  if (is_new) blocks_.push_back({type, 0, groups_, {}, {}});
-  return place->second;
-}
-
-void BlockBuilder::add(const ElementType& type, Tag number, std::span<const Index> nodes) {
-  std::size_t& current = current_[static_cast<std::size_t>(type.shape)];
-  if (current == none) current = find_block(type);
-  ElementBlock& block = blocks_[current];
-  block.tags.push_back(number);
-  block.nodes.insert(block.nodes.end(), nodes.begin(), nodes.end());
-}
 
 void check_face_size(const Scanner& scanner, Tag n_corners) {
   if (n_corners != 3 && n_corners != 4)
@@ -63,64 +25,6 @@ Index checked_node(const Scanner& scanner, Tag number, Index n_nodes) {
     scanner.fail(
         fmt::format("node {} does not exist: they are numbered 0 to {}", number, n_nodes - 1));
   return static_cast<Index>(number);
-}
-
-void number_nodes(Mesh& mesh) {
-  mesh.node_tags.resize(mesh.nodes.size());
-  std::iota(mesh.node_tags.begin(), mesh.node_tags.end(), Tag{1});
-}
-
-std::vector<Vec3> stored_positions(const MeshSource& source, const std::vector<Vec3>& positions) {
-  std::vector<Vec3> stored = positions;
-  for (Vec3& x : stored) x = x.unaryExpr([&](double value) { return as_stored(source, value); });
-  return stored;
-}
-
-CornerNormals::CornerNormals(const std::vector<Vec3>& positions, std::size_t n_slots)
-    : positions_(&positions), sums_(n_slots, Vec3::Zero()) {
-  const double extent = largest_extent(positions);
-  if (extent > 0 && std::isfinite(extent)) scale_ = extent;
-}
-
-void CornerNormals::add_face(std::span<const Index> nodes, std::span<const Index> slots) {
-  std::array<Vec3, 4> edges;  // edge k goes from corner k to the next
-  const std::size_t n = nodes.size();
-  for (std::size_t k = 0; k < n; ++k)
-    edges[k] = (*positions_)[nodes[(k + 1) % n]] / scale_ - (*positions_)[nodes[k]] / scale_;
-  for (std::size_t k = 0; k < n; ++k)
-    if (slots[k] >= 0 && static_cast<std::size_t>(slots[k]) < sums_.size())
-      sums_[slots[k]] += max_weighted(edges[k], -edges[(k + n - 1) % n]);
-}
-
-Vec3 CornerNormals::normal(std::size_t slot) const {
-  const double largest = sums_[slot].lpNorm<Eigen::Infinity>();
-  if (!(largest > 0 && std::isfinite(largest))) return Vec3::Zero();
-  return (sums_[slot] / largest).normalized() + Vec3::Zero();  // no -0
-}
-
-std::vector<bool> moved_nodes(const Mesh& mesh) {
-  std::vector<bool> moved(mesh.nodes.size());
-  for (std::size_t i = 0; i < moved.size(); ++i)
-    moved[i] = !same_bits(mesh.nodes[i], mesh.source->positions[i]);
-  return moved;
-}
-
-NodeNormals::NodeNormals(const Mesh& mesh) : is_stale(mesh.nodes.size()) {
-  const std::vector<bool> moved = moved_nodes(mesh);
-  const std::vector<Vec3> positions = stored_positions(*mesh.source, mesh.nodes);
-  CornerNormals sums(positions, positions.size());
-  for (const ElementBlock& block : mesh.blocks) {
-    if (!is_surface(block)) continue;
-    for (Index i = 0; i < block.size(); ++i) {
-      const auto face = block.element(i);
-      sums.add_face(face, face);
-      if (std::any_of(face.begin(), face.end(), [&](Index node) { return moved[node]; }))
-        for (const Index node : face) is_stale[node] = true;
-    }
-  }
-  normals.resize(positions.size(), Vec3::Zero());
-  for (std::size_t i = 0; i < normals.size(); ++i)
-    if (is_stale[i]) normals[i] = sums.normal(i);
 }
 
 SurfacePart::SurfacePart(const Mesh& mesh, int least_dimension) : numbers(mesh.nodes.size(), -1) {
@@ -157,16 +61,6 @@ void check_surface_part(const Mesh& mesh, const std::filesystem::path& path, int
     if (is_held(block, least_dimension) && block.type.order > 1)
       throw InputError(fmt::format("{}: a {} cannot be written to this format; write .msh",
                                    path.string(), name(block.type)));
-}
-
-std::string group_name(const Mesh& mesh, int dim, Tag tag) {
-  const auto group = std::find_if(
-      mesh.groups.begin(), mesh.groups.end(),
-      [&](const PhysicalGroup& each) { return each.dimension == dim && each.tag == tag; });
-  std::string text = group != mesh.groups.end() ? group->name : "";
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < 32 || c == 127) c = ' ';
-  return text.empty() ? fmt::format("group_{}", tag) : text;
 }
 
 }  // namespace roughmesh::detail

@@ -1,88 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the formats of bare surfaces share: faces as blocks, normals of vertices, and which part of
-// a mesh goes into such a file.
+// What the formats of bare surfaces share: checks of faces, and which part of a mesh goes into
+// such a file.
 #pragma once
 
-#include <array>
 #include <filesystem>
-#include <map>
-#include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "roughmesh/mesh.hpp"
 
-#include "mesh_source.hpp"
 #include "scanner.hpp"
 
 namespace roughmesh::detail {
-
-inline constexpr ElementType point_type{ElementShape::point, 1, 1};
-inline constexpr ElementType line_type{ElementShape::line, 1, 2};
-inline constexpr ElementType triangle_type{ElementShape::triangle, 1, 3};
-inline constexpr ElementType quadrangle_type{ElementShape::quadrangle, 1, 4};
-
-/// Gathers elements into one block for each (type, set of groups), in order of first appearance.
-class BlockBuilder {
- public:
-  void set_groups(std::vector<Tag> groups);  ///< of the elements to come; ascending
-  void add(const ElementType& type, Tag number, std::span<const Index> nodes);
-  void add_face(Tag number, std::span<const Index> corners) {
-    add(corners.size() == 4 ? quadrangle_type : triangle_type, number, corners);
-  }
-  std::vector<ElementBlock> take() { return std::move(blocks_); }
-
- private:
-  static constexpr std::size_t none = static_cast<std::size_t>(-1);
-  std::size_t find_block(const ElementType& type);
-
-  std::vector<ElementBlock> blocks_;
-  std::map<std::pair<ElementShape, std::vector<Tag>>, std::size_t> places_;
-  std::vector<Tag> groups_;
-  std::array<std::size_t, 4> current_ = {none, none, none, none};  // block, by shape
-};
 
 /// @throws FormatError  neither 3 nor 4
 void check_face_size(const Scanner& scanner, Tag n_corners);
 
 /// A node number that counts from 0. @throws FormatError  no such node
 Index checked_node(const Scanner& scanner, Tag number, Index n_nodes);
-
-/// Numbers the nodes of a mesh 1, 2, 3, ...
-void number_nodes(Mesh& mesh);
-
-/// Positions as the source's number format holds them.
-std::vector<Vec3> stored_positions(const MeshSource& source, const std::vector<Vec3>& positions);
-
-/// Unit normals of slots, which are nodes or whatever else a file gives normals to: each slot sums
-/// the corners that use it (docs/math.md, eq. 2). The sum is zero, and so is the normal, where
-/// faces have no area or cancel.
-class CornerNormals {
- public:
-  /// @param positions  kept by reference, in the order that `nodes` of add_face refer to
-  CornerNormals(const std::vector<Vec3>& positions, std::size_t n_slots);
-
-  /// A face of 3 or 4 corners; slots outside of [0, n_slots) stand for none.
-  void add_face(std::span<const Index> nodes, std::span<const Index> slots);
-  Vec3 normal(std::size_t slot) const;
-
- private:
-  const std::vector<Vec3>* positions_;
-  double scale_ = 1;  // keeps squares of lengths within the range of doubles
-  std::vector<Vec3> sums_;
-};
-
-/// Normals at the nodes of all faces of a mesh that was moved, at its positions as stored.
-/// `is_stale[i]`: a face at node i has a node that moved.
-struct NodeNormals {
-  NodeNormals(const Mesh& mesh);
-
-  std::vector<bool> is_stale;
-  std::vector<Vec3> normals;
-};
-
-std::vector<bool> moved_nodes(const Mesh& mesh);  ///< by bits, against its source
 
 /// The part of a mesh that a file of elements of dimension `least_dimension` to 2 holds. Nodes that
 /// only other elements use are left out.
@@ -98,8 +33,5 @@ std::int64_t n_elements(const SurfacePart& part, int dimension);
 
 /// @throws InputError  no surface elements, or elements of that part that are of higher order
 void check_surface_part(const Mesh& mesh, const std::filesystem::path& path, int least_dimension);
-
-/// Name of the group: its own or, if that is empty, "group_5"; without control characters.
-std::string group_name(const Mesh& mesh, int dimension, Tag tag);
 
 }  // namespace roughmesh::detail

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "corner_normals.hpp"
 #include "messages.hpp"
 #include "polygon.hpp"
 
@@ -38,12 +39,6 @@ Vec3 vector_of_face(const Surface& surface, Index face) {
   return face_vector(gather(surface.face(face), surface.points).span(), surface.plane_normal);
 }
 
-// Contribution of one corner with the edges that leave it, next and previous (docs/math.md, eq. 2).
-Vec3 max_weighted_normal(const Vec3& next, const Vec3& previous) {
-  const double squares = next.squaredNorm() * previous.squaredNorm();
-  return squares > 0 ? Vec3(next.cross(previous) / squares) : Vec3::Zero();
-}
-
 // Normal of each line over its length (docs/math.md, eq. 35).
 std::vector<VectorSum> curve_sums(const Surface& surface) {
   std::vector<VectorSum> sums(surface.points.size());
@@ -63,8 +58,8 @@ std::vector<VectorSum> max_sums(const Surface& surface) {
     const std::size_t n = face.size();
     for (std::size_t k = 0; k < n; ++k) {
       const Vec3& x = surface.points[face[k]];
-      sums[face[k]].add(max_weighted_normal(surface.points[face[(k + 1) % n]] - x,
-                                            surface.points[face[(k + n - 1) % n]] - x));
+      sums[face[k]].add(corner_normal(surface.points[face[(k + 1) % n]] - x,
+                                      surface.points[face[(k + n - 1) % n]] - x));
     }
   }
   return sums;
