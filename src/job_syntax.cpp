@@ -99,7 +99,9 @@ class TomlScan {
   void check_header() const {
     std::size_t next = at_ + (here(1) == '[' ? 2 : 1);
     next = text_.find_first_not_of(" \t", next);
-    if (next == text_.npos || begins_key(text_[next]) || text_[next] == ']') return;
+    if (next == text_.npos || begins_key(text_[next]) || text_[next] == ']' ||
+        static_cast<unsigned char>(text_[next]) >= 0x80)  // told in its place
+      return;
     throw FormatError(fmt::format("{}:{}: not TOML: a table without a name; write [[surface]]",
                                   source_, line_at(text_, at_)));
   }

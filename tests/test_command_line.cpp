@@ -117,6 +117,17 @@ TEST_F(CommandLine, ARealizationMayHaveItsOwnFolder) {
   EXPECT_TRUE(std::filesystem::exists(folder / "run_1/rough.msh"));
 }
 
+// Rq of 2e-5 is at most 340 spacings of float32 near 1 (2^-24 below, 2^-23 above), 1e11 of float64.
+TEST_F(CommandLine, WarnsWhereTheOutputRoundsHeightsAndNotWhereTheInputDid) {
+  const std::string job = "roughen sphere.msh --rms 2e-5 --length 0.8 ";
+  EXPECT_NE(run(job + "-o a.stl --binary").err.find("spacings"), std::string::npos);
+  EXPECT_EQ(run(job + "-o a.msh").err.find("spacings"), std::string::npos);
+  EXPECT_EQ(run("roughen a.stl --rms 2e-5 --length 0.8 -o b.msh").err.find("spacings"),
+            std::string::npos);
+  const auto report = nlohmann::json::parse(test::read_bytes(folder / "a.report.json"));
+  EXPECT_TRUE(report["warnings"].empty());
+}
+
 TEST_F(CommandLine, MessagesHoldNoControlCharacters) {
   const Outcome outcome = run("roughen $'no\nsuch\x1b[31mfile.msh' -o a.msh --rms 1 --length 1");
   expect_failure(outcome, 2, "control characters");
