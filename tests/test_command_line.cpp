@@ -4,6 +4,7 @@
 #include <regex>
 #include <string>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -296,6 +297,25 @@ TEST_F(CommandLine, AnInterruptKeepsFinishedRealizationsOnly) {
     ++n_meshes;
   }
   EXPECT_GE(n_meshes, 4);
+}
+
+TEST_F(CommandLine, InfoStatesSizesOfTheFirstFiftyGroupsAndElementsOfAll) {
+  Mesh mesh = test::icosphere(1);
+  mesh.groups.clear();
+  for (Tag tag = 1; tag <= 60; ++tag) mesh.groups.push_back({2, tag, fmt::format("g{}", tag)});
+  for (const PhysicalGroup& group : mesh.groups)
+    mesh.blocks[0].physical_groups.push_back(group.tag);
+  mesh.blocks[0].physical_groups.erase(mesh.blocks[0].physical_groups.begin(),
+                                       mesh.blocks[0].physical_groups.end() - 60);
+  write_mesh(mesh, folder / "groups.msh");
+  const std::string out = run("info groups.msh --group g60").out;
+  const std::regex with_size(" g\\d+ +80  area"), with_count(" g\\d+ +80(\n|  area)");
+  const auto n = [&](const std::regex& line) {
+    return std::distance(std::sregex_iterator(out.begin(), out.end(), line), {});
+  };
+  EXPECT_EQ(n(with_size), 50) << out;
+  EXPECT_EQ(n(with_count), 60) << out;
+  EXPECT_NE(out.find("first 50 groups only"), std::string::npos);
 }
 
 TEST_F(CommandLine, InfoStatesGroupsAndResolution) {
