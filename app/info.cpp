@@ -2,6 +2,7 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -22,14 +23,13 @@ void print_mesh(const Mesh& mesh, const std::string& path) {
     fmt::print("  {:<28} {:>12}\n", "periodic links", mesh.periodic_links.size());
 }
 
-std::int64_t n_elements_in(const Mesh& mesh, const PhysicalGroup& group) {
-  std::int64_t count = 0;
-  for (const ElementBlock& block : mesh.blocks) {
-    if (dimension(block.type.shape) != group.dimension) continue;
+/// Of each group that has any, by dimension and number.
+std::map<std::pair<int, Tag>, std::int64_t> elements_of_groups(const Mesh& mesh) {
+  std::map<std::pair<int, Tag>, std::int64_t> counts;
+  for (const ElementBlock& block : mesh.blocks)
     for (const Tag tag : block.physical_groups)
-      if (tag == group.tag) count += block.size();
-  }
-  return count;
+      counts[{dimension(block.type.shape), tag}] += block.size();
+  return counts;
 }
 
 const char* measure_of(const Surface& surface) {
@@ -55,10 +55,18 @@ std::string surface_size(const Mesh& mesh, const PhysicalGroup& group) {
 void print_groups(const Mesh& mesh) {
   if (mesh.groups.empty()) return;
   fmt::print("\nphysical groups (dimension, number, name, elements)\n");
-  for (const PhysicalGroup& group : mesh.groups)
+  // Each size takes a look at the whole mesh, which thousands of groups would make slow.
+  constexpr std::size_t most_sizes = 50;
+  auto counts = elements_of_groups(mesh);
+  for (std::size_t i = 0; i < mesh.groups.size(); ++i) {
+    const PhysicalGroup& group = mesh.groups[i];
     fmt::print("  {}  {:>6}  {:<20} {:>10}{}\n", group.dimension, group.tag,
-               group.name.empty() ? "-" : group.name, n_elements_in(mesh, group),
-               surface_size(mesh, group));
+               group.name.empty() ? "-" : group.name, counts[{group.dimension, group.tag}],
+               i < most_sizes ? surface_size(mesh, group) : "");
+  }
+  if (mesh.groups.size() > most_sizes)
+    fmt::print("  sizes of the first {} groups only; --group NAME shows that of another\n",
+               most_sizes);
 }
 
 void print_surface(const Surface& surface, const std::string& unit) {

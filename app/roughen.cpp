@@ -166,12 +166,32 @@ WriteOptions with_fields(WriteOptions options, const RoughMesh& rough, const std
   return options;
 }
 
+/// Heights that the numbers of the file would round. Nothing else knows what file is written.
+void warn_of_digits(const Mesh& mesh, const std::string& path, Report& report) {
+  constexpr double fewest = 1000;  // spacings in Rq
+  const RoughenOptions& request = report.request;
+  const double spacing = coordinate_spacing(mesh, path, write_options(request));
+  for (std::size_t s = 0; s < request.surfaces.size(); ++s) {
+    const double rms = request.surfaces[s].rms;
+    if (rms >= fewest * spacing) continue;
+    report.warnings.push_back(
+        fmt::format("{}--rms {:g} is only {:.3g} spacings of the numbers that OUTPUT can hold "
+                    "({:.3g}): heights "
+                    "are rounded; use a file with more digits",
+                    request.surfaces.size() == 1
+                        ? ""
+                        : fmt::format("surface {}: ", list_of(report.surfaces[s].groups)),
+                    rms, rms / spacing, spacing));
+  }
+}
+
 void make_realizations(const Mesh& mesh, const RoughenOptions& options,
                        const std::vector<std::string>& losses, ReportFile& file) {
   const ProgressBar progress(options);
   const auto deliver = [&](const RoughMesh& rough, Report& report) {
     const std::string path = output_path(options.output, rough.realization);
     write_mesh(rough.mesh, path, with_fields(write_options(options), rough, path));
+    if (report.realizations.size() == 1) warn_of_digits(mesh, path, report);
     if (report.realizations.size() == 1 && !losses.empty())
       report.warnings.push_back(
           fmt::format("OUTPUT does not hold all of INPUT; left out: {}", list_of(losses)));

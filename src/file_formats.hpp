@@ -59,6 +59,8 @@ struct FileFormat {
   /// Largest distance between neighbouring numbers that patching can write at the coordinates of
   /// the mesh; 0, or null, where it is that of the number format.
   double (*spacing)(const Mesh& mesh) = nullptr;
+  /// Likewise of a new file. Null where positions are float64, or float32 as `holds` tells.
+  double (*new_spacing)(const Mesh& mesh) = nullptr;
   std::vector<Encoding> encodings = {Encoding::text};  ///< of new files, the usual one first
 };
 

@@ -20,8 +20,11 @@
 #ifdef __linux__
 #include <sys/personality.h>
 #endif
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include "free_memory.hpp"
 
 namespace roughmesh::detail {
 namespace {
@@ -156,6 +159,17 @@ std::string from_here(const std::string& program) {
   return std::filesystem::absolute(program).string();
 }
 
+// A script may ask for any number of elements. The child has run for a moment before, which is too
+// short to fill anything.
+void limit_size(pid_t child, const GmshCall& call) {
+  const std::optional<std::uint64_t> most = call.most_bytes ? call.most_bytes : free_memory();
+  if (!most) return;
+  constexpr std::uint64_t programs = std::uint64_t{4} << 30;  // address space, hardly used
+  const rlimit memory{*most + programs, *most + programs}, file{*most, *most};
+  ::prlimit(child, RLIMIT_AS, &memory, nullptr);
+  ::prlimit(child, RLIMIT_FSIZE, &file, nullptr);
+}
+
 pid_t start(const ScratchFolder& folder, const GmshCall& call, int output) {
   std::vector<std::string> words = {from_here(call.program)};
   words.insert(words.end(), call.arguments.begin(), call.arguments.end());
@@ -173,7 +187,10 @@ pid_t start(const ScratchFolder& folder, const GmshCall& call, int output) {
   const FixedAddresses fixed_addresses;
   const int error = ::posix_spawnp(&child, argv[0], preparation.actions(), preparation.attributes(),
                                    argv.data(), envp.data());
-  if (error == 0) folder.set_child(child);
+  if (error == 0) {
+    folder.set_child(child);
+    limit_size(child, call);
+  }
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   if (error != 0) fail_to_start(call.program, error);
   return child;
@@ -259,6 +276,11 @@ std::string without_colours(const std::string& text) {
 }
 
 [[noreturn]] void fail_crashed(const GmshCall& call, int signal_number, const std::string& output) {
+  if (signal_number == SIGXFSZ)
+    throw InputError(
+        fmt::format("{}: wrote a file larger than the memory that is free and was stopped; ask for "
+                    "a larger --mesh-size",
+                    call.program));
   const std::string said = first_error(output);
   throw NumericalError(
       fmt::format("{}: crashed ({}){}{}; try another --mesh-size or a newer gmsh (--gmsh PATH)",

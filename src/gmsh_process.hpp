@@ -3,7 +3,9 @@
 // from a file, and would bring its licence (docs/geometry.md).
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,9 @@ struct GmshCall {
   std::vector<std::string> arguments = {};  ///< given as they are: no shell sees them
   double timeout = 600;                     ///< seconds of wall-clock time, > 0
   std::filesystem::path folder = {};        ///< to run in; empty: the scratch folder
+  /// Size of each file that it writes, and of its memory with room for programs and libraries.
+  /// Absent: the memory that is free, beyond which a mesh could not be read.
+  std::optional<std::uint64_t> most_bytes = {};
 };
 
 struct GmshOutcome {
@@ -29,7 +34,7 @@ struct GmshOutcome {
 /// file of the user is read), and all output kept. The child and its children are
 /// killed at the time limit and on an interrupt (ScratchFolder).
 ///
-/// @throws InputError      no such program; the time is over
+/// @throws InputError      no such program; the time is over; a file beyond the limit
 /// @throws NumericalError  killed by a signal: crashed
 GmshOutcome run_gmsh(const ScratchFolder& folder, const GmshCall& call);
 

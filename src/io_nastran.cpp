@@ -262,6 +262,7 @@ const FileFormat nastran_format = {
     .check_new = check_nastran,
     .write_new = write_new_nastran,
     .holds = {.groups = true, .group_names = true, .tags = true, .least_dimension = 1},
-    .spacing = nastran_spacing};
+    .spacing = nastran_spacing,
+    .new_spacing = new_nastran_spacing};
 
 }  // namespace roughmesh::detail

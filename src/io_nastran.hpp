@@ -61,6 +61,7 @@ const NodeOrders& nastran_node_orders();
 void write_patched_nastran(const Mesh& mesh, OutputFile& output);
 /// 0 where each GRID is in free fields, which hold all digits.
 double nastran_spacing(const Mesh& mesh);
+double new_nastran_spacing(const Mesh& mesh);
 
 void check_nastran(const Mesh& mesh, const std::filesystem::path& path);
 void write_new_nastran(const Mesh& mesh, const WriteOptions& options, OutputFile& output);

@@ -221,6 +221,10 @@ double nastran_spacing(const Mesh& mesh) {
   if (std::all_of(source.offsets.begin(), source.offsets.end(),
                   [&](std::uint64_t offset) { return is_free_record(file, offset); }))
     return 0;
+  return new_nastran_spacing(mesh);
+}
+
+double new_nastran_spacing(const Mesh& mesh) {
   double least = 0, greatest = 0;
   for (const Vec3& x : mesh.nodes) {
     least = std::min(least, x.minCoeff());

@@ -47,15 +47,25 @@ class TomlScan {
     if (c == '"' || c == '\'') return skip_string(c);
     if (c == '#') return skip_to_line_end();
     require_ascii();
-    if (c == '[' && in_key_ && depth_ == 0) check_header();
-    if (c == '[' || c == '{') ++depth_;
-    if (c == ']' || c == '}') --depth_;
+    if (c == '[' && in_key_ && open_.empty()) check_header();
+    if (c == '[' || c == '{') open_.push_back(c);
+    if (c == ']' || c == '}') close(c);
     if (c == '\n' || c == '=' || c == ',' || c == '[' || c == '{') n_dots_ = 0;
     if (c == '.') ++n_dots_;
     if (c == '=') in_key_ = false;
-    if (c == '\n' && depth_ <= 0) in_key_ = true;
-    if (depth_ > deepest_job || n_dots_ >= deepest_job) refuse_depth(source_, line_at(text_, at_));
+    if (c == '\n' && open_.empty()) in_key_ = true;
+    if (open_.size() > deepest_job || n_dots_ >= deepest_job)
+      refuse_depth(source_, line_at(text_, at_));
     ++at_;
+  }
+
+  // toml++ 3.3 takes for granted that no other bracket stands where a value is due.
+  void close(char bracket) {
+    const char due = open_.empty() ? '\0' : open_.back() == '[' ? ']' : '}';
+    if (bracket != due)
+      throw FormatError(fmt::format("{}:{}: not TOML: {} closes what was not opened", source_,
+                                    line_at(text_, at_), bracket));
+    open_.pop_back();
   }
 
   void skip_to_line_end() { at_ = std::min(text_.find('\n', at_), text_.size()); }
@@ -99,7 +109,9 @@ class TomlScan {
   void check_header() const {
     std::size_t next = at_ + (here(1) == '[' ? 2 : 1);
     next = text_.find_first_not_of(" \t", next);
-    if (next == text_.npos || begins_key(text_[next]) || text_[next] == ']') return;
+    if (next == text_.npos || begins_key(text_[next]) || text_[next] == ']' ||
+        static_cast<unsigned char>(text_[next]) >= 0x80)  // told in its place
+      return;
     throw FormatError(fmt::format("{}:{}: not TOML: a table without a name; write [[surface]]",
                                   source_, line_at(text_, at_)));
   }
@@ -107,15 +119,15 @@ class TomlScan {
   std::string_view text_;
   const std::string& source_;
   std::size_t at_ = 0;
-  bool in_key_ = true;  ///< before the = of a line
-  int depth_ = 0;
-  int n_dots_ = 0;  ///< of one key
+  bool in_key_ = true;      ///< before the = of a line
+  std::string open_;        ///< brackets that are
+  std::size_t n_dots_ = 0;  ///< of one key
 };
 
 }  // namespace
 
 void check_json_syntax(std::string_view text, const std::string& source) {
-  int depth = 0;
+  std::size_t depth = 0;
   bool in_string = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
@@ -123,7 +135,7 @@ void check_json_syntax(std::string_view text, const std::string& source) {
     if (in_string && c == '\\') ++i;
     if (in_string) continue;
     if (c == '[' || c == '{') ++depth;
-    if (c == ']' || c == '}') --depth;
+    if ((c == ']' || c == '}') && depth > 0) --depth;
     if (depth > deepest_job) refuse_depth(source, line_at(text, i));
   }
 }

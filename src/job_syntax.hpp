@@ -4,12 +4,14 @@
 // expect. One pass over the text, before it is parsed.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
 namespace roughmesh::detail {
 
-inline constexpr int deepest_job = 32;  ///< lists and tables within each other; options need 4
+inline constexpr std::size_t deepest_job =
+    32;  ///< lists and tables within each other; options need 4
 
 /// @throws FormatError  nested more than `deepest_job` deep
 void check_json_syntax(std::string_view text, const std::string& source);

@@ -185,14 +185,29 @@ void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const Write
   output.commit();
 }
 
+namespace {
+
+const detail::Holds& holds_of(const WritePlan& plan) {
+  const bool is_text = plan.options.encoding == Encoding::text;
+  return is_text && plan.format->text_holds ? *plan.format->text_holds : plan.format->holds;
+}
+
+double spacing_at(const Mesh& mesh, bool is_float) {
+  double largest = 0;
+  for (const Vec3& x : mesh.nodes) largest = std::max(largest, x.lpNorm<Eigen::Infinity>());
+  const int digits = is_float ? 23 : 52;
+  const int least_exponent = is_float ? -126 : -1022;  // below, the spacing no longer shrinks
+  return std::ldexp(1.0, std::max(std::ilogb(largest), least_exponent) - digits);
+}
+
+}  // namespace
+
 std::vector<std::string> conversion_losses(const Mesh& mesh, const std::filesystem::path& path,
                                            const WriteOptions& options) {
   const WritePlan plan = make_plan(mesh, path, options);
   std::vector<std::string> losses;
   if (plan.copies_source) return losses;
-  const bool is_text = plan.options.encoding == Encoding::text;
-  const detail::Holds& holds =
-      is_text && plan.format->text_holds ? *plan.format->text_holds : plan.format->holds;
+  const detail::Holds& holds = holds_of(plan);
   add_lost_elements(mesh, holds, losses);
   if (!mesh.groups.empty() && !holds.groups)
     losses.push_back(fmt::format("{} physical groups", mesh.groups.size()));
@@ -245,13 +260,16 @@ std::string checksum(const Mesh& mesh) {
 double coordinate_spacing(const Mesh& mesh) {
   if (mesh.source != nullptr && detail::file_format(mesh.format).spacing != nullptr)
     if (const double own = detail::file_format(mesh.format).spacing(mesh); own > 0) return own;
-  double largest = 0;
-  for (const Vec3& x : mesh.nodes) largest = std::max(largest, x.lpNorm<Eigen::Infinity>());
-  const bool is_float =
-      mesh.source != nullptr && mesh.source->coordinates == detail::NumberFormat::float32;
-  const int digits = is_float ? 23 : 52;
-  const int least_exponent = is_float ? -126 : -1022;  // below, the spacing no longer shrinks
-  return std::ldexp(1.0, std::max(std::ilogb(largest), least_exponent) - digits);
+  return spacing_at(
+      mesh, mesh.source != nullptr && mesh.source->coordinates == detail::NumberFormat::float32);
+}
+
+double coordinate_spacing(const Mesh& mesh, const std::filesystem::path& path,
+                          const WriteOptions& options) {
+  const WritePlan plan = make_plan(mesh, path, options);
+  if (plan.copies_source) return coordinate_spacing(mesh);
+  if (plan.format->new_spacing != nullptr) return plan.format->new_spacing(mesh);
+  return spacing_at(mesh, !holds_of(plan).full_precision);
 }
 
 }  // namespace roughmesh

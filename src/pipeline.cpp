@@ -224,7 +224,7 @@ class Run {
       described.resolution =
           timed(times().surface, [&] { return assess_resolution(surface, correlation); });
       detail::warn_of_surface(report_, surface, rough_.plans[s].request);
-      detail::warn_of_scale(report_, mesh_, described, rough_.plans[s].request);
+      detail::warn_of_scale(report_, described, rough_.plans[s].request);
     }
   }
 

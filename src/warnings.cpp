@@ -6,8 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "roughmesh/mesh_io.hpp"
-
 namespace roughmesh::detail {
 namespace {
 
@@ -69,18 +67,10 @@ void warn_of_surface(Report& report, const Surface& surface, const Roughness& re
                      surface.n_duplicate_faces, words.faces));
 }
 
-void warn_of_scale(Report& report, const Mesh& mesh, const SurfaceReport& surface,
-                   const Roughness& request) {
+void warn_of_scale(Report& report, const SurfaceReport& surface, const Roughness& request) {
   const double rq = request.rms;
   for (const std::string& text : resolution_warnings(surface.resolution, rq))
     warn(report, surface.groups, text);
-  const double spacing = coordinate_spacing(mesh);
-  if (rq < 1000 * spacing)
-    warn(
-        report, surface.groups,
-        fmt::format("--rms {:g} is only {:.3g} spacings of the numbers the file can hold ({:.3g}): "
-                    "heights are rounded; use a file with more digits",
-                    rq, rq / spacing, spacing));
   const double h = surface.mesh_size.median;
   if (rq < 1e-6 * h)
     warn(

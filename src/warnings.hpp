@@ -13,10 +13,8 @@ namespace roughmesh::detail {
 /// Sharp edges, edges of many faces, faces that count once.
 void warn_of_surface(Report& report, const Surface& surface, const Roughness& request);
 
-/// Roughness that the mesh, the numbers of its file or its size cannot carry; surface.resolution is
-/// set.
-void warn_of_scale(Report& report, const Mesh& mesh, const SurfaceReport& surface,
-                   const Roughness& request);
+/// Roughness that the mesh or its size cannot carry; surface.resolution is set.
+void warn_of_scale(Report& report, const SurfaceReport& surface, const Roughness& request);
 
 /// Covariances beyond the tolerance, clipped eigenvalues; audit and field of report.surfaces are
 /// set.

@@ -5,6 +5,7 @@
 #include <regex>
 #include <string>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -116,6 +117,17 @@ TEST_F(CommandLine, ARealizationMayHaveItsOwnFolder) {
   ASSERT_EQ(run(sphere_job + "-o run_{realization}/rough.msh --realizations 2").exit_code, 0);
   EXPECT_TRUE(std::filesystem::exists(folder / "rough.report.json"));
   EXPECT_TRUE(std::filesystem::exists(folder / "run_1/rough.msh"));
+}
+
+// Rq of 2e-5 is at most 340 spacings of float32 near 1 (2^-24 below, 2^-23 above), 1e11 of float64.
+TEST_F(CommandLine, WarnsWhereTheOutputRoundsHeightsAndNotWhereTheInputDid) {
+  const std::string job = "roughen sphere.msh --rms 2e-5 --length 0.8 ";
+  EXPECT_NE(run(job + "-o a.stl --binary").err.find("spacings"), std::string::npos);
+  EXPECT_EQ(run(job + "-o a.msh").err.find("spacings"), std::string::npos);
+  EXPECT_EQ(run("roughen a.stl --rms 2e-5 --length 0.8 -o b.msh").err.find("spacings"),
+            std::string::npos);
+  const auto report = nlohmann::json::parse(test::read_bytes(folder / "a.report.json"));
+  EXPECT_TRUE(report["warnings"].empty());
 }
 
 TEST_F(CommandLine, MessagesHoldNoControlCharacters) {
@@ -312,6 +324,25 @@ TEST_F(CommandLine, AnInterruptKeepsFinishedRealizationsOnly) {
     ++n_meshes;
   }
   EXPECT_GE(n_meshes, 4);
+}
+
+TEST_F(CommandLine, InfoStatesSizesOfTheFirstFiftyGroupsAndElementsOfAll) {
+  Mesh mesh = test::icosphere(1);
+  mesh.groups.clear();
+  for (Tag tag = 1; tag <= 60; ++tag) mesh.groups.push_back({2, tag, fmt::format("g{}", tag)});
+  for (const PhysicalGroup& group : mesh.groups)
+    mesh.blocks[0].physical_groups.push_back(group.tag);
+  mesh.blocks[0].physical_groups.erase(mesh.blocks[0].physical_groups.begin(),
+                                       mesh.blocks[0].physical_groups.end() - 60);
+  write_mesh(mesh, folder / "groups.msh");
+  const std::string out = run("info groups.msh --group g60").out;
+  const std::regex with_size(" g\\d+ +80  area"), with_count(" g\\d+ +80(\n|  area)");
+  const auto n = [&](const std::regex& line) {
+    return std::distance(std::sregex_iterator(out.begin(), out.end(), line), {});
+  };
+  EXPECT_EQ(n(with_size), 50) << out;
+  EXPECT_EQ(n(with_count), 60) << out;
+  EXPECT_NE(out.find("first 50 groups only"), std::string::npos);
 }
 
 TEST_F(CommandLine, InfoStatesGroupsAndResolution) {

@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -124,6 +125,29 @@ TEST(GmshProcess, ACrashIsToldWithWhatGmshSaidLast) {
             gmsh.path() +
                 ": crashed (Segmentation fault) after: bad surface; try another "
                 "--mesh-size or a newer gmsh (--gmsh PATH)");
+}
+
+TEST(GmshProcess, FilesAreLimitedInSize) {
+  const FakeGmsh gmsh("sleep 0.2; exec head -c 3000000 /dev/zero > big");
+  const ScratchFolder folder;
+  const auto run = [&](std::uint64_t most) {
+    return run_gmsh(folder, {gmsh.path(), {}, 60, most}).exit_status;
+  };
+  EXPECT_EQ(run(3000000), 0);
+  try {
+    run(2999999);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("larger --mesh-size"), std::string::npos);
+  }
+  EXPECT_EQ(std::filesystem::file_size(folder / "big"), 2999999U);
+}
+
+TEST(GmshProcess, MemoryIsLimited) {
+  const FakeGmsh gmsh("sleep 0.2; ulimit -v");
+  const ScratchFolder folder;
+  const std::uint64_t kib = (std::uint64_t{4} << 20) + 1024;  // 4 GiB for programs, 1 MiB
+  EXPECT_EQ(run_gmsh(folder, {gmsh.path(), {}, 60, 1U << 20}).output, fmt::format("{}\n", kib));
 }
 
 TEST(GmshProcess, AMissingProgramIsToldWithTheRemedy) {

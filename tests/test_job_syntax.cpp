@@ -83,6 +83,11 @@ TEST(JobSyntax, SignsBeyondAsciiStandInTextsAndCommentsOnly) {
     EXPECT_NE(read_job_text(text).output.find(e), std::string::npos) << text;
 }
 
+TEST(JobSyntax, BracketsMatch) {
+  for (const std::string text : {"length = [0,} 1]", "x = {a = [1}]", "x = {]", "x = 1]", "]", "}"})
+    EXPECT_NE(message_of<FormatError>(text).find("was not opened"), std::string::npos) << text;
+}
+
 TEST(JobSyntax, MessagesAreShortAndInOneLine) {
   const std::string key = "\"a\\nb\" = 1";
   for (const std::string& text : {std::string("rms = [[1], [2]]"), std::string("rms = {a = 1}"),

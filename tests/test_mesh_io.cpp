@@ -377,6 +377,22 @@ TEST(CoordinateSpacing, IsThatOfTheLargestCoordinate) {
   EXPECT_EQ(coordinate_spacing(mesh), std::numeric_limits<double>::denorm_min());
 }
 
+// 5 lies in the binade [4, 8); a field of 16 characters holds -5 with 13 digits behind the point.
+TEST(CoordinateSpacing, IsThatOfTheFileToBeWritten) {
+  const test::TemporaryFolder folder;
+  Mesh mesh = test::icosphere(0, 1.0);
+  mesh.nodes[0] = {0, -5, 0};
+  const double of_float = std::ldexp(4.0, -23), of_double = std::ldexp(4.0, -52);
+  EXPECT_EQ(coordinate_spacing(mesh, "a.msh"), of_double);
+  EXPECT_EQ(coordinate_spacing(mesh, "a.stl", {.encoding = Encoding::binary}), of_float);
+  EXPECT_EQ(coordinate_spacing(mesh, "a.stl", {.encoding = Encoding::text}), of_double);
+  EXPECT_DOUBLE_EQ(coordinate_spacing(mesh, "a.bdf"), 1e-13);
+  write_mesh(mesh, folder / "a.stl", {.encoding = Encoding::binary});
+  const Mesh read = read_mesh(folder / "a.stl");
+  EXPECT_EQ(coordinate_spacing(read, "b.stl"), of_float);
+  EXPECT_EQ(coordinate_spacing(read, "b.msh"), of_double);
+}
+
 TEST(RealFiles, ComeOutIdentical) {
   const char* const data = std::getenv("ROUGHMESH_DATA");
   if (data == nullptr) GTEST_SKIP() << "ROUGHMESH_DATA is not set";

@@ -88,6 +88,12 @@ std::string checksum(const Mesh& mesh);
 /// last digit of a field of 16 characters for Nastran, 2^-52 of the binade otherwise. A length.
 double coordinate_spacing(const Mesh& mesh);
 
+/// Likewise of the numbers that write_mesh() would put into a file at `path`: float32 in a new
+/// binary STL whatever was read, float64 in most new files, those of the source where it is copied.
+/// @throws InputError  as write_mesh would, before anything is written
+double coordinate_spacing(const Mesh& mesh, const std::filesystem::path& path,
+                          const WriteOptions& options = {});
+
 /// Removes what an unfinished write_mesh or write_text left beside its path; kills a gmsh that runs
 /// for mesh_geometry and removes its temporary folder. Async-signal-safe: for the handler of an
 /// interrupt, after which the process must end.
