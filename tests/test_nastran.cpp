@@ -199,6 +199,8 @@ TEST(Nastran, NumbersOfFortranAreRead) {
   for (const char* const text : {"", "-", ".", "1.5-", "1.5e", "nan", "inf", "-inf", "1.+400",
                                  "1 2", "0x1p3", "1-2-3", "--1", "1.5ee3", "e5"})
     EXPECT_FALSE(fortran_real(text)) << text;
+  for (std::size_t n = 2; n < 200; ++n)
+    EXPECT_FALSE(fortran_real("1." + std::string(n, '-') + "1")) << n << " signs";
 }
 
 TEST(Nastran, IsWrittenAnewAndReadBackToTheLastDigit) {
