@@ -130,6 +130,24 @@ TEST(Nastran, RewritesMovedEntriesWithAllTheirDigits) {
   }
 }
 
+// An entry with lines of two kinds, or one that leaves out a whole line, is written in free fields.
+TEST(Nastran, RewritesMovedEntriesOfMixedFields) {
+  const test::TemporaryFolder folder;
+  const std::string rest = "GRID,2,,1.,0.,0.\nGRID,3,,0.,1.,0.\nCTRIA3,1,1,1,2,3\n";
+  const std::string fixed = "GRID*   " + large("1", "", "1.", "0.") + "*\n";
+  for (const std::string& entry :
+       {std::string("GRID*,1,,1.,0.\n"), std::string("GRID*,1,,1.,0.\n*\t0.\n"),
+        std::string("GRID*,1,,1.,0.\n*       0.\n"), fixed + "*,0.\n",
+        fixed + "*,0.0000000000000000000\n"}) {
+    Mesh mesh = read_text(folder, "a.bdf", entry + rest);
+    mesh.nodes[0] = {1.0 / 3, 0, 1.0 / 7};
+    write_mesh(mesh, folder / "b.bdf");
+    EXPECT_EQ(test::read_bytes(folder / "b.bdf"),
+              "GRID,1,,0.3333333333333333,0.,0.14285714285714285\n" + rest)
+        << entry;
+  }
+}
+
 TEST(Nastran, MshOfAnyNameStaysMsh) {
   const test::TemporaryFolder folder;
   write_mesh(test::plate(1), folder / "a.msh");
