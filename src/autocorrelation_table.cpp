@@ -120,7 +120,9 @@ std::span<const GaussianTerm> AutocorrelationTable::terms() const {
 }
 
 double AutocorrelationTable::rho(double r) const {
-  if (!interpolant_) return mixture_rho(mixture_.terms, r);
+  if (r == 0) return 1;
+  // The weights add up to 1 but for rounding.
+  if (!interpolant_) return std::min(mixture_rho(mixture_.terms, r), 1.0);
   return r > interpolant_->nodes().back() ? 0 : (*interpolant_)(r);
 }
 

@@ -15,19 +15,23 @@ bool is_exponent_letter(char c) { return c == 'e' || c == 'E' || c == 'd' || c =
 
 // The number with its exponent behind an "e", as std::from_chars reads it.
 struct Plain {
-  std::array<char, longest + 2> text;
+  std::array<char, longest + 1> text;  // at most one "e" is added
   std::size_t size = 0;
   bool is_small = false;  // its exponent is negative
 
   void add(char c) { text[size++] = c; }
 };
 
-Plain plain(std::string_view text) {
+// Nothing where a sign follows that of the exponent.
+std::optional<Plain> plain(std::string_view text) {
   Plain result;
+  bool has_exponent_sign = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     const bool is_sign = c == '+' || c == '-';
     if (is_sign && i > 0) {
+      if (has_exponent_sign) return {};
+      has_exponent_sign = true;
       result.is_small = c == '-';
       if (!is_exponent_letter(text[i - 1])) result.add('e');
     }
@@ -44,12 +48,13 @@ std::optional<double> fortran_real(std::string_view text) {
   // What std::from_chars knows besides digits are words such as "nan".
   const std::size_t digits = text.front() == '+' || text.front() == '-' ? 1 : 0;
   if (digits == text.size() || !(is_digit(text[digits]) || text[digits] == '.')) return {};
-  const Plain number = plain(text);
+  const std::optional<Plain> number = plain(text);
+  if (!number) return {};
   double value = 0;
-  const char* const end = number.text.data() + number.size;
-  const auto [stop, error] = std::from_chars(number.text.data(), end, value);
+  const char* const end = number->text.data() + number->size;
+  const auto [stop, error] = std::from_chars(number->text.data(), end, value);
   if (stop != end) return {};
-  if (error == std::errc::result_out_of_range && number.is_small) return 0.0;
+  if (error == std::errc::result_out_of_range && number->is_small) return 0.0;
   if (error != std::errc() || !std::isfinite(value)) return {};
   return value;
 }

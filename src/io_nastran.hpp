@@ -17,15 +17,18 @@ namespace roughmesh::detail {
 /// One entry of the bulk data with its continuation lines. Field 0 is the name; a line of small
 /// fields and one of free ones hold eight more, a line of large fields four.
 struct BulkCard {
-  std::string name;  ///< in capitals, without "*"
-  bool is_free = false;
+  std::string name;                      ///< in capitals, without "*"
+  bool has_free = false;                 ///< a line of it is in free fields
+  bool has_fixed = false;                ///< a line of it is in small or large ones
   std::vector<std::string_view> fields;  ///< without space; data() is null where the line has ended
   std::vector<std::string_view> lines;   ///< of the file, without their ends
   std::vector<bool> is_large;            ///< of each line
   std::list<std::string> expanded;       ///< lines with tabs, which go to the next multiple of 8
 
   void clear();
-  std::string_view field(std::size_t i) const { return i < fields.size() ? fields[i] : ""; }
+  std::string_view field(std::size_t i) const {
+    return i < fields.size() ? fields[i] : std::string_view();
+  }
 };
 
 /// Reads the entries of the bulk data one after the other.

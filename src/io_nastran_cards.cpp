@@ -99,6 +99,7 @@ void BulkCard::clear() {
   lines.clear();
   is_large.clear();
   expanded.clear();
+  has_free = has_fixed = false;
 }
 
 void BulkReader::move_to_bulk() {
@@ -119,11 +120,11 @@ void BulkReader::add_line(BulkCard& card, std::string_view line) const {
   const bool is_free = is_free_line(text);
   if (!is_free && text.find('\t') != text.npos)
     text = card.expanded.emplace_back(expand_tabs(text));
+  (is_free ? card.has_free : card.has_fixed) = true;
   const std::string_view first = first_field(text);
   const bool is_first = card.lines.size() == 1;
   const bool is_large = is_first ? first.ends_with('*') : first.starts_with('*');
   if (is_first) {
-    card.is_free = is_free;
     card.name = upper(first.substr(0, first.size() - (is_large ? 1 : 0)));
     card.fields.push_back(first);
   }

@@ -40,8 +40,8 @@ struct Move {
   std::string text(std::size_t field) const {
     const bool is_coordinate = field >= first_coordinate && field < first_coordinate + 3;
     if (is_coordinate && changes(field - first_coordinate))
-      return card.is_free ? nastran_real(value(field - first_coordinate))
-                          : nastran_real_16(value(field - first_coordinate));
+      return card.has_free ? nastran_real(value(field - first_coordinate))
+                           : nastran_real_16(value(field - first_coordinate));
     return std::string(card.field(field));
   }
 };
@@ -96,7 +96,8 @@ void patch_free_fields(TextPatcher& patcher, const Move& move) {
   const auto is_there = [&](std::size_t axis) {
     return !move.changes(axis) || move.card.field(first_coordinate + axis).data() != nullptr;
   };
-  if (is_there(0) && is_there(1) && is_there(2)) {
+  // A fixed field among free ones holds too few characters for all digits.
+  if (!move.card.has_fixed && is_there(0) && is_there(1) && is_there(2)) {
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (move.changes(axis))
         patcher.replace(move.card.fields[first_coordinate + axis],
@@ -116,7 +117,7 @@ void patch_free_fields(TextPatcher& patcher, const Move& move) {
 
 void patch_grid(TextPatcher& patcher, const MeshSource& source, const Move& move) {
   const BulkCard& card = move.card;
-  if (card.is_free) return patch_free_fields(patcher, move);
+  if (card.has_free) return patch_free_fields(patcher, move);
   const bool is_large_throughout =
       card.lines.size() == 2 && card.is_large[0] && card.is_large[1] && card.expanded.empty();
   if (is_large_throughout) return patch_large_fields(patcher, move);

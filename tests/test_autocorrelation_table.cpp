@@ -125,6 +125,17 @@ TEST(Table, ThatAMixtureMeetsIsThatMixture) {
   EXPECT_EQ(acf.citations().size(), 2u);
 }
 
+// Weights that add up to 1 but for rounding leave no trace: of these tables some sums miss 1.
+TEST(Table, IsOneAtZeroAndNeverMore) {
+  for (int k = 1; k < 100; ++k) {
+    const double a = k / 100.0;
+    const Autocorrelation acf = table(pairs_of(
+        [a](double r) { return a * std::exp(-r) + (1 - a) * std::exp(-r * r); }, 0.25, 30));
+    EXPECT_EQ(acf.rho(0), 1) << a;
+    EXPECT_LE(acf.rho(1e-12), 1) << a;
+  }
+}
+
 TEST(Table, ThatNoMixtureMeetsIsInterpolated) {
   const auto pairs = pairs_of(oscillation, 0.05, 100);
   const Autocorrelation acf = table(pairs);

@@ -130,6 +130,24 @@ TEST(Nastran, RewritesMovedEntriesWithAllTheirDigits) {
   }
 }
 
+// An entry with lines of two kinds, or one that leaves out a whole line, is written in free fields.
+TEST(Nastran, RewritesMovedEntriesOfMixedFields) {
+  const test::TemporaryFolder folder;
+  const std::string rest = "GRID,2,,1.,0.,0.\nGRID,3,,0.,1.,0.\nCTRIA3,1,1,1,2,3\n";
+  const std::string fixed = "GRID*   " + large("1", "", "1.", "0.") + "*\n";
+  for (const std::string& entry :
+       {std::string("GRID*,1,,1.,0.\n"), std::string("GRID*,1,,1.,0.\n*\t0.\n"),
+        std::string("GRID*,1,,1.,0.\n*       0.\n"), fixed + "*,0.\n",
+        fixed + "*,0.0000000000000000000\n"}) {
+    Mesh mesh = read_text(folder, "a.bdf", entry + rest);
+    mesh.nodes[0] = {1.0 / 3, 0, 1.0 / 7};
+    write_mesh(mesh, folder / "b.bdf");
+    EXPECT_EQ(test::read_bytes(folder / "b.bdf"),
+              "GRID,1,,0.3333333333333333,0.,0.14285714285714285\n" + rest)
+        << entry;
+  }
+}
+
 TEST(Nastran, MshOfAnyNameStaysMsh) {
   const test::TemporaryFolder folder;
   write_mesh(test::plate(1), folder / "a.msh");
@@ -199,6 +217,8 @@ TEST(Nastran, NumbersOfFortranAreRead) {
   for (const char* const text : {"", "-", ".", "1.5-", "1.5e", "nan", "inf", "-inf", "1.+400",
                                  "1 2", "0x1p3", "1-2-3", "--1", "1.5ee3", "e5"})
     EXPECT_FALSE(fortran_real(text)) << text;
+  for (std::size_t n = 2; n < 200; ++n)
+    EXPECT_FALSE(fortran_real("1." + std::string(n, '-') + "1")) << n << " signs";
 }
 
 TEST(Nastran, IsWrittenAnewAndReadBackToTheLastDigit) {
