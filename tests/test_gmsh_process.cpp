@@ -131,7 +131,7 @@ TEST(GmshProcess, FilesAreLimitedInSize) {
   const FakeGmsh gmsh("sleep 0.2; exec head -c 3000000 /dev/zero > big");
   const ScratchFolder folder;
   const auto run = [&](std::uint64_t most) {
-    return run_gmsh(folder, {gmsh.path(), {}, 60, most}).exit_status;
+    return run_gmsh(folder, {gmsh.path(), {}, 60, {}, most}).exit_status;
   };
   EXPECT_EQ(run(3000000), 0);
   try {
@@ -147,7 +147,7 @@ TEST(GmshProcess, MemoryIsLimited) {
   const FakeGmsh gmsh("sleep 0.2; ulimit -v");
   const ScratchFolder folder;
   const std::uint64_t kib = (std::uint64_t{4} << 20) + 1024;  // 4 GiB for programs, 1 MiB
-  EXPECT_EQ(run_gmsh(folder, {gmsh.path(), {}, 60, 1U << 20}).output, fmt::format("{}\n", kib));
+  EXPECT_EQ(run_gmsh(folder, {gmsh.path(), {}, 60, {}, 1U << 20}).output, fmt::format("{}\n", kib));
 }
 
 TEST(GmshProcess, AMissingProgramIsToldWithTheRemedy) {
