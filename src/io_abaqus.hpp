@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "element_table.hpp"
@@ -87,7 +88,10 @@ class AbaqusSets {
     Index element = 0;
     int face = 0;
     Tag group = 0;
-    friend auto operator<=>(const Face&, const Face&) = default;
+    friend bool operator==(const Face&, const Face&) = default;
+    friend bool operator<(const Face& a, const Face& b) {
+      return std::tie(a.element, a.face, a.group) < std::tie(b.element, b.face, b.group);
+    }
   };
 
   std::optional<Item> item(std::string_view field, bool in_assembly) const;

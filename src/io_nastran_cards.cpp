@@ -162,7 +162,7 @@ std::string nastran_real(double value) {
 }
 
 std::string nastran_real_16(double value) {
-  if (const std::string exact = compact(shortest(value)); exact.size() <= large_width) return exact;
+  if (std::string exact = compact(shortest(value)); exact.size() <= large_width) return exact;
   std::string best = longest_that_fits(
       [value](int precision) { return fmt::format("{:.{}e}", value, precision); });
   if (std::abs(value) >= 1e15) return best;

@@ -47,7 +47,8 @@ std::vector<std::array<Index, 3>> split(std::span<const Index> face,
 
 std::int64_t n_triangles(const SurfacePart& part) {
   std::int64_t n = 0;
-  for (const ElementBlock* block : part.blocks) n += block->size() * (block->type.n_nodes - 2);
+  for (const ElementBlock* block : part.blocks)
+    n += std::int64_t{block->size()} * (block->type.n_nodes - 2);
   return n;
 }
 

@@ -208,6 +208,7 @@ void Reader::read_entities(Tag n, std::size_t n_each, Tag group) {
 // Numbers of elements that are not in the mesh, such as springs, are passed over.
 void Reader::apply_groups() {
   std::vector<std::pair<Tag, Index>> by_number;
+  by_number.reserve(elements_.size());
   for (Index e = 0; e < static_cast<Index>(elements_.size()); ++e)
     by_number.emplace_back(elements_.row(e).number, e);
   std::sort(by_number.begin(), by_number.end());
