@@ -76,6 +76,12 @@ void print_statistics(const SurfaceStatistics& s) {
   fmt::print("  Ssk {:.2f}  Sku {:.2f}", s.heights.ssk, s.heights.sku);
 }
 
+std::string method_in_words(const FieldSummary& field) {
+  if (field.cholesky)
+    return fmt::format("{} of rank {}", name(field.cholesky->factorization), field.cholesky->rank);
+  return fmt::format("lattice of {} Gaussians", field.lattice->terms.size());
+}
+
 void print_summary(const Report& report, const std::string& path_of_report) {
   for (const RealizationReport& r : report.realizations) {
     fmt::print("{}", r.path);
@@ -86,9 +92,8 @@ void print_summary(const Report& report, const std::string& path_of_report) {
     fmt::print("  min quality {:.3g} (before {:.3g})\n", r.min_quality, r.min_quality_before);
   }
   for (const SurfaceReport& surface : report.surfaces)
-    fmt::print("{}  {} nodes, {} of rank {}, covariance error {:.2g}\n", list_of(surface.groups),
-               surface.nodes, name(surface.field.factorization), surface.field.rank,
-               surface.audit.covariance_error);
+    fmt::print("{}  {} nodes, {}, covariance error {:.2g}\n", list_of(surface.groups),
+               surface.nodes, method_in_words(surface.field), surface.audit.covariance_error);
   fmt::print("{}  {:.2f} s\n", path_of_report, report.timings.total);
 }
 

@@ -160,7 +160,7 @@ std::vector<PointPair> audited_pairs(const Correlation& correlation) {
   return pairs;
 }
 
-Audit audit_covariance(const Factor& factor, const Correlation& correlation) {
+Audit audit_covariance(const FieldMethod& method, const Correlation& correlation) {
   std::vector<PointPair> pairs = audited_pairs(correlation);
   const auto n = static_cast<std::size_t>(correlation.n_points());
   const std::size_t n_pairs = pairs.size();
@@ -169,10 +169,10 @@ Audit audit_covariance(const Factor& factor, const Correlation& correlation) {
     const auto point = static_cast<Index>(k * n / n_diagonal);
     pairs.emplace_back(point, point);
   }
-  const std::vector<double> covariances = factor.covariances(pairs);
+  const std::vector<double> covariances = method.covariances(pairs);
   Audit audit{0, static_cast<Index>(n_pairs), static_cast<Index>(n_diagonal)};
   for (std::size_t p = 0; p < pairs.size(); ++p) {
-    const double rho = correlation(pairs[p].first, pairs[p].second);
+    const double rho = method.target(pairs[p].first, pairs[p].second);
     audit.covariance_error = std::max(audit.covariance_error, error_of(covariances[p], rho));
   }
   return audit;

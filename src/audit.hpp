@@ -6,7 +6,7 @@
 
 #include "roughmesh/field.hpp"
 
-#include "factor.hpp"
+#include "field_method.hpp"
 
 namespace roughmesh::detail {
 
@@ -14,8 +14,8 @@ namespace roughmesh::detail {
 /// distance from (nearly) the shortest to the largest. A function of the places and the distance.
 std::vector<PointPair> audited_pairs(const Correlation& correlation);
 
-/// Compares the covariances of the factor with the correlation on the audited pairs and up to 10^4
+/// Compares the covariances of the method with its target on the audited pairs and up to 10^4
 /// diagonal entries. A covariance that is not a number counts as an infinite error.
-Audit audit_covariance(const Factor& factor, const Correlation& correlation);
+Audit audit_covariance(const FieldMethod& method, const Correlation& correlation);
 
 }  // namespace roughmesh::detail

@@ -10,10 +10,9 @@
 #include "roughmesh/white_noise.hpp"
 
 #include "dense_matrix.hpp"
+#include "field_method.hpp"
 
 namespace roughmesh::detail {
-
-using PointPair = std::pair<Index, Index>;
 
 enum class FactorShape {
   trapezoid,  ///< column k is zero above row k; what the matrix holds there is never read

@@ -8,14 +8,26 @@
 
 #include "audit.hpp"
 #include "field_cholesky.hpp"
+#include "field_lattice.hpp"
 
 namespace roughmesh {
 
-std::string_view name(Method) { return "cholesky"; }
+std::string_view name(Method method) {
+  switch (method) {
+    case Method::automatic:
+      return "auto";
+    case Method::cholesky:
+      return "cholesky";
+    case Method::lattice:
+      break;
+  }
+  return "lattice";
+}
 
-Method method_from_name(std::string_view name) {
-  if (name == "auto" || name == "cholesky") return Method::cholesky;
-  throw InputError(fmt::format("method '{}' is unknown; use auto or cholesky", name));
+Method method_from_name(std::string_view text) {
+  for (const Method method : {Method::automatic, Method::cholesky, Method::lattice})
+    if (text == name(method)) return method;
+  throw InputError(fmt::format("method '{}' is unknown; use auto, cholesky or lattice", text));
 }
 
 std::string_view name(Factorization factorization) {
@@ -38,19 +50,39 @@ struct FieldSampler::Plan {
 namespace {
 
 void check_input(const Correlation& correlation, const FieldOptions& options) {
-  if (!(options.tolerance > 0) || !std::isfinite(options.tolerance))
-    throw InputError(fmt::format("tolerance {} is out of range; give a finite number above 0",
+  if (!(options.tolerance > 0) || !(options.tolerance < 1))
+    throw InputError(fmt::format("tolerance {} is out of range; give a number between 0 and 1",
                                  options.tolerance));
+  if (options.cutoff && (!(*options.cutoff > 0) || !std::isfinite(*options.cutoff)))
+    throw InputError(
+        fmt::format("cutoff {} is out of range; give a length above 0", *options.cutoff));
   if (correlation.n_points() == 0)
     throw InputError("a field needs at least one point; select a surface");
+}
+
+/// What decides is the correlation alone, never the number of points, so that heights of one
+/// request come from one method on every mesh.
+Method chosen(const Correlation& correlation, const FieldOptions& options) {
+  if (options.method != Method::automatic) return options.method;
+  return detail::lattice_obstacle(correlation).empty() ? Method::lattice : Method::cholesky;
+}
+
+detail::PreparedField prepare(const Correlation& correlation, const FieldOptions& options) {
+  if (chosen(correlation, options) == Method::lattice)
+    return detail::prepare_lattice(correlation, options);
+  if (options.cutoff)
+    throw InputError(
+        fmt::format("cutoff {}: only the method lattice can leave out short scales; leave it out "
+                    "or choose lattice",
+                    *options.cutoff));
+  return detail::prepare_cholesky(correlation);
 }
 
 }  // namespace
 
 FieldSampler::FieldSampler(const Correlation& correlation, const FieldOptions& options) {
   check_input(correlation, options);
-  detail::PreparedField field =
-      detail::prepare_cholesky(detail::autocorrelation_matrix(correlation));
+  detail::PreparedField field = prepare(correlation, options);
   field.summary.minimum_image_difference = correlation.minimum_image_difference();
   plan_.reset(new Plan{correlation, std::move(field)});
 }
@@ -60,36 +92,36 @@ FieldSampler::FieldSampler(FieldSampler&&) noexcept = default;
 FieldSampler& FieldSampler::operator=(FieldSampler&&) noexcept = default;
 
 std::vector<double> FieldSampler::heights(std::uint64_t seed, std::uint64_t realization) const {
-  return plan_->field.factor.heights({seed, realization});
+  return plan_->field.method->heights({seed, realization});
 }
 
-double FieldSampler::covariance(Index i, Index j) const {
-  const Index n = plan_->correlation.n_points();
+namespace {
+
+void require_pair(Index i, Index j, Index n) {
   if (std::min(i, j) < 0 || std::max(i, j) >= n)
     throw InputError(
         fmt::format("covariance of points {} and {}: there are points 0 to {}", i, j, n - 1));
+}
+
+}  // namespace
+
+double FieldSampler::covariance(Index i, Index j) const {
+  require_pair(i, j, plan_->correlation.n_points());
   const detail::PointPair pair{i, j};
-  return plan_->field.factor.covariances({&pair, 1}).front();
+  return plan_->field.method->covariances({&pair, 1}).front();
+}
+
+double FieldSampler::target(Index i, Index j) const {
+  require_pair(i, j, plan_->correlation.n_points());
+  return plan_->field.method->target(i, j);
 }
 
 Audit FieldSampler::audit() const {
-  return detail::audit_covariance(plan_->field.factor, plan_->correlation);
+  return detail::audit_covariance(*plan_->field.method, plan_->correlation);
 }
 
 const FieldSummary& FieldSampler::summary() const { return plan_->field.summary; }
 
-std::vector<std::string> FieldSampler::citations() const {
-  std::vector<std::string> works = {
-      "Loth, Kiel, Busch, Kristensen (2020), Surface roughness in finite element meshes, "
-      "arXiv:2002.00894",
-      "Salmon, Moraes, Dror, Shaw (2011), Parallel random numbers: as easy as 1, 2, 3, "
-      "doi:10.1145/2063384.2063405",
-      "Higham (2009), Cholesky factorization, doi:10.1002/wics.18"};
-  if (summary().factorization == Factorization::pivoted_cholesky)
-    works.emplace_back(
-        "Lucas (2004), LAPACK-style codes for level 2 and 3 pivoted Cholesky factorizations, "
-        "LAPACK Working Note 161");
-  return works;
-}
+std::vector<std::string> FieldSampler::citations() const { return plan_->field.citations; }
 
 }  // namespace roughmesh

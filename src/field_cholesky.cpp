@@ -122,7 +122,7 @@ double variance_change(const Factor& factor) {
   return largest;
 }
 
-PreparedField prepare_by_eigenvalues(DenseMatrix a, FieldSummary summary) {
+CholeskyField prepare_by_eigenvalues(DenseMatrix a, CholeskySummary summary) {
   const std::size_t n = a.n_rows();
   require_memory(n, "eigenvalues of the indefinite autocorrelation matrix");
   const std::vector<double> eigenvalues = spectral_root(a, eigenvalue_smoothing);
@@ -139,9 +139,9 @@ PreparedField prepare_by_eigenvalues(DenseMatrix a, FieldSummary summary) {
   return {std::move(factor), summary};
 }
 
-PreparedField prepare(const AutocorrelationMatrix& matrix) {
+CholeskyField prepare(const AutocorrelationMatrix& matrix) {
   DenseMatrix a(matrix.n, matrix.n);
-  FieldSummary summary;
+  CholeskySummary summary;
   summary.smallest_correlation = assemble(matrix, a);
 
   if (may_be_well_conditioned(a)) {
@@ -165,6 +165,38 @@ PreparedField prepare(const AutocorrelationMatrix& matrix) {
   return prepare_by_eigenvalues(std::move(a), summary);
 }
 
+class CholeskyMethod final : public FieldMethod {
+ public:
+  CholeskyMethod(Correlation correlation, Factor factor)
+      : correlation_(std::move(correlation)), factor_(std::move(factor)) {}
+
+  std::vector<double> heights(const NoiseStream& stream) const override {
+    return factor_.heights(stream);
+  }
+  std::vector<double> covariances(std::span<const PointPair> pairs) const override {
+    return factor_.covariances(pairs);
+  }
+  double target(Index i, Index j) const override { return correlation_(i, j); }
+
+ private:
+  Correlation correlation_;
+  Factor factor_;
+};
+
+std::vector<std::string> cited_works(Factorization factorization) {
+  std::vector<std::string> works = {
+      "Loth, Kiel, Busch, Kristensen (2020), Surface roughness in finite element meshes, "
+      "arXiv:2002.00894",
+      "Salmon, Moraes, Dror, Shaw (2011), Parallel random numbers: as easy as 1, 2, 3, "
+      "doi:10.1145/2063384.2063405",
+      "Higham (2009), Cholesky factorization, doi:10.1002/wics.18"};
+  if (factorization == Factorization::pivoted_cholesky)
+    works.emplace_back(
+        "Lucas (2004), LAPACK-style codes for level 2 and 3 pivoted Cholesky factorizations, "
+        "LAPACK Working Note 161");
+  return works;
+}
+
 }  // namespace
 
 AutocorrelationMatrix autocorrelation_matrix(const Correlation& correlation) {
@@ -175,7 +207,7 @@ AutocorrelationMatrix autocorrelation_matrix(const Correlation& correlation) {
           }};
 }
 
-PreparedField prepare_cholesky(const AutocorrelationMatrix& matrix) {
+CholeskyField factorize_correlation(const AutocorrelationMatrix& matrix) {
   require_memory(matrix.n, "autocorrelation matrix");
   try {
     return prepare(matrix);
@@ -185,6 +217,15 @@ PreparedField prepare_cholesky(const AutocorrelationMatrix& matrix) {
         "coarser mesh or a smaller group) or a machine with more memory",
         matrix.n));
   }
+}
+
+PreparedField prepare_cholesky(const Correlation& correlation) {
+  CholeskyField field = factorize_correlation(autocorrelation_matrix(correlation));
+  PreparedField prepared;
+  prepared.citations = cited_works(field.summary.factorization);
+  prepared.summary.cholesky = field.summary;
+  prepared.method = std::make_unique<CholeskyMethod>(correlation, std::move(field.factor));
+  return prepared;
 }
 
 }  // namespace roughmesh::detail

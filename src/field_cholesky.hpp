@@ -22,9 +22,9 @@ struct AutocorrelationMatrix {
 /// The correlation must outlive the result.
 AutocorrelationMatrix autocorrelation_matrix(const Correlation& correlation);
 
-struct PreparedField {
+struct CholeskyField {
   Factor factor;
-  FieldSummary summary;
+  CholeskySummary summary;
 };
 
 /// Chooses the factorization by properties of R alone, never by whether a call of LAPACK succeeded:
@@ -36,6 +36,9 @@ struct PreparedField {
 /// @throws InputError      too little free memory
 /// @throws NumericalError  a correlation that is not a number; the eigenvalue decomposition did not
 /// converge
-PreparedField prepare_cholesky(const AutocorrelationMatrix& matrix);
+CholeskyField factorize_correlation(const AutocorrelationMatrix& matrix);
+
+/// The same as a method; keeps a copy of the correlation.
+PreparedField prepare_cholesky(const Correlation& correlation);
 
 }  // namespace roughmesh::detail

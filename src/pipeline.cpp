@@ -95,7 +95,8 @@ std::vector<std::string> cited_works(std::span<const FieldSampler> samplers,
 /// Covariance between the points of a surface that the sampler really has.
 std::function<double(Index, Index)> covariance_of(const FieldSampler& sampler,
                                                   const SurfacePlan& plan, const FieldPlan& field) {
-  if (sampler.summary().factorization != Factorization::eigenvalue) return {};
+  const auto& cholesky = sampler.summary().cholesky;
+  if (!cholesky || cholesky->factorization != Factorization::eigenvalue) return {};
   const std::vector<Index> sampled = masters(field.partners);
   std::vector<Index> position;
   for (const Index point : plan.field_point)

@@ -66,24 +66,40 @@ ordered_json resolution_json(const Resolution& r) {
           {"largest_safe_rq", number(r.largest_safe_rq)}};
 }
 
+ordered_json cholesky_json(const CholeskySummary& r) {
+  return {{"factorization", name(r.factorization)},
+          {"rank", r.rank},
+          {"negative_eigenvalues", r.negative_eigenvalues},
+          {"smallest_eigenvalue", optional(r.smallest_eigenvalue)},
+          {"smallest_correlation", number(r.smallest_correlation)},
+          {"variance_change", number(r.variance_change)}};
+}
+
+ordered_json lattice_json(const LatticeSummary& r) {
+  ordered_json terms = ordered_json::array();
+  for (const GaussianTerm& term : r.terms)
+    terms.push_back({{"scale", number(term.scale)}, {"weight", number(term.weight)}});
+  return {{"terms", std::move(terms)},
+          {"nugget", number(r.nugget)},
+          {"lost_variance", number(r.lost_variance)},
+          {"same_on_other_meshes", r.same_on_other_meshes}};
+}
+
 ordered_json field_json(const SurfaceReport& r, double tolerance) {
-  return {{"method", name(r.field.method)},
-          {"tolerance", tolerance},
-          {"covariance_error", number(r.audit.covariance_error)},
-          {"audited_pairs", r.audit.n_pairs},
-          {"equivalent_lengths",
-           {{"formula", optional(r.lengths.formula)},
-            {"one_over_e", number(r.lengths.one_over_e)},
-            {"integral", optional(r.lengths.integral)},
-            {"sal", number(r.lengths.sal)}}},
-          {"factorization", name(r.field.factorization)},
-          {"rank", r.field.rank},
-          {"negative_eigenvalues", r.field.negative_eigenvalues},
-          {"smallest_eigenvalue", optional(r.field.smallest_eigenvalue)},
-          {"smallest_correlation", number(r.field.smallest_correlation)},
-          {"variance_change", number(r.field.variance_change)},
-          {"fit_residual", optional(r.fit_residual)},
-          {"minimum_image_difference", optional(r.field.minimum_image_difference)}};
+  ordered_json object = {{"method", name(r.field.method)},
+                         {"tolerance", tolerance},
+                         {"covariance_error", number(r.audit.covariance_error)},
+                         {"audited_pairs", r.audit.n_pairs},
+                         {"equivalent_lengths",
+                          {{"formula", optional(r.lengths.formula)},
+                           {"one_over_e", number(r.lengths.one_over_e)},
+                           {"integral", optional(r.lengths.integral)},
+                           {"sal", number(r.lengths.sal)}}}};
+  if (r.field.cholesky) object.update(cholesky_json(*r.field.cholesky));
+  if (r.field.lattice) object.update(lattice_json(*r.field.lattice));
+  object["fit_residual"] = optional(r.fit_residual);
+  object["minimum_image_difference"] = optional(r.field.minimum_image_difference);
+  return object;
 }
 
 ordered_json statistics_json(const SurfaceStatistics& r) {

@@ -33,12 +33,13 @@ void warn_of_field(Report& report, const SurfaceReport& surface) {
     warn(report, surface.groups,
          fmt::format("audited covariance error {:.3g} is above the tolerance {:g}",
                      surface.audit.covariance_error, report.request.tolerance));
-  if (surface.field.variance_change > 1e-3)
+  const auto& cholesky = surface.field.cholesky;
+  if (cholesky && cholesky->variance_change > 1e-3)
     warn(report, surface.groups,
          fmt::format("this autocorrelation is not positive definite for this distance: {} negative "
                      "eigenvalues were set to zero, which changes variances by up to {:.3g}; use a "
                      "shorter length or --distance euclidean",
-                     surface.field.negative_eigenvalues, surface.field.variance_change));
+                     cholesky->negative_eigenvalues, cholesky->variance_change));
 }
 
 }  // namespace

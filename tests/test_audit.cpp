@@ -106,16 +106,37 @@ TEST(AuditedPairs, BearPointsAtDistanceZero) {
   EXPECT_FALSE(audited_pairs(Correlation(column, exponential, streaks)).empty());
 }
 
+/// A factor as a sampling method for the exponential.
+class FactorMethod final : public FieldMethod {
+ public:
+  FactorMethod(Factor factor, std::vector<Vec3> points,
+               const Autocorrelation& autocorrelation = exponential)
+      : factor_(std::move(factor)),
+        correlation_(std::move(points), autocorrelation, Distance::euclidean()) {}
+
+  std::vector<double> heights(const NoiseStream& stream) const override {
+    return factor_.heights(stream);
+  }
+  std::vector<double> covariances(std::span<const PointPair> pairs) const override {
+    return factor_.covariances(pairs);
+  }
+  double target(Index i, Index j) const override { return correlation_(i, j); }
+  Audit audit() const { return audit_covariance(*this, correlation_); }
+
+ private:
+  Factor factor_;
+  Correlation correlation_;
+};
+
 // Uncorrelated heights, where an exponential was asked for: the error is rho at the shortest
 // distance.
 TEST(Audit, SeesAMissingCorrelation) {
   const std::vector<Vec3> points = sphere_points(3);
-  const Factor factor(identity(points.size()), identity_order(points.size()),
-                      FactorShape::trapezoid);
+  const FactorMethod method(
+      {identity(points.size()), identity_order(points.size()), FactorShape::trapezoid}, points);
   const auto pairs = audited_pairs(Correlation(points, exponential, Distance::euclidean()));
   const std::vector<double> r = distances(pairs, points, Distance::euclidean());
-  const Audit audit =
-      audit_covariance(factor, Correlation(points, exponential, Distance::euclidean()));
+  const Audit audit = method.audit();
   EXPECT_DOUBLE_EQ(audit.covariance_error, exponential.rho(*std::min_element(r.begin(), r.end())));
   EXPECT_EQ(audit.n_pairs, static_cast<Index>(pairs.size()));
   EXPECT_EQ(audit.n_diagonal, static_cast<Index>(points.size()));
@@ -127,25 +148,20 @@ TEST(Audit, SeesOneRowThatIsTooLarge) {
   std::vector<Vec3> points;
   for (std::size_t i = 0; i < n; ++i) points.emplace_back(1000.0 * static_cast<double>(i), 0, 0);
   DenseMatrix columns = identity(n);
-  const Factor right(identity(n), identity_order(n), FactorShape::trapezoid);
-  EXPECT_EQ(audit_covariance(right, Correlation(points, exponential, Distance::euclidean()))
-                .covariance_error,
-            0);
+  const FactorMethod right({identity(n), identity_order(n), FactorShape::trapezoid}, points);
+  EXPECT_EQ(right.audit().covariance_error, 0);
   columns(row, row) *= 1.001;
-  const Factor wrong(std::move(columns), identity_order(n), FactorShape::trapezoid);
-  EXPECT_NEAR(audit_covariance(wrong, Correlation(points, exponential, Distance::euclidean()))
-                  .covariance_error,
-              0.002001, 1e-12);
+  const FactorMethod wrong({std::move(columns), identity_order(n), FactorShape::trapezoid}, points);
+  EXPECT_NEAR(wrong.audit().covariance_error, 0.002001, 1e-12);
 }
 
 TEST(Audit, DoesNotTakeANumberThatIsNoneForAgreement) {
   const std::vector<Vec3> points = sphere_points(2);
   DenseMatrix columns = identity(points.size());
   columns(7, 3) = std::numeric_limits<double>::quiet_NaN();
-  const Factor factor(std::move(columns), identity_order(points.size()), FactorShape::trapezoid);
-  EXPECT_EQ(audit_covariance(factor, Correlation(points, exponential, Distance::euclidean()))
-                .covariance_error,
-            std::numeric_limits<double>::infinity());
+  const FactorMethod method(
+      {std::move(columns), identity_order(points.size()), FactorShape::trapezoid}, points);
+  EXPECT_EQ(method.audit().covariance_error, std::numeric_limits<double>::infinity());
 }
 
 // What is compared is what was asked for, so a factor of another length does not pass.
@@ -154,13 +170,12 @@ TEST(Audit, SeesALengthThatWasNotAskedFor) {
   const Distance distance = Distance::euclidean();
   const Autocorrelation longer(
       {.family = Family::exponential, .length = 0.3 * std::numbers::sqrt2});
-  const PreparedField field =
-      prepare_cholesky(autocorrelation_matrix(Correlation(points, longer, distance)));
-  EXPECT_LT(audit_covariance(field.factor, Correlation(points, longer, distance)).covariance_error,
-            1e-12);
-  EXPECT_GT(
-      audit_covariance(field.factor, Correlation(points, exponential, distance)).covariance_error,
-      0.05);
+  const auto factor = [&] {
+    return factorize_correlation(autocorrelation_matrix(Correlation(points, longer, distance)))
+        .factor;
+  };
+  EXPECT_LT(FactorMethod(factor(), points, longer).audit().covariance_error, 1e-12);
+  EXPECT_GT(FactorMethod(factor(), points, exponential).audit().covariance_error, 0.05);
 }
 
 }  // namespace

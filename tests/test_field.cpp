@@ -51,7 +51,7 @@ void expect_sample_covariance(const Autocorrelation& autocorrelation, const Dist
                               const std::vector<Vec3>& points, Factorization factorization) {
   constexpr std::uint64_t n_realizations = 4000;
   const FieldSampler sampler(Correlation(points, autocorrelation, distance));
-  ASSERT_EQ(sampler.summary().factorization, factorization);
+  ASSERT_EQ(sampler.summary().cholesky->factorization, factorization);
   const auto n = static_cast<int>(points.size());
   Eigen::MatrixXd heights(n, static_cast<int>(n_realizations));
   for (std::uint64_t realization = 0; realization < n_realizations; ++realization) {
@@ -181,22 +181,23 @@ TEST(FieldSampler, CovarianceIsTheOneThatWasAskedFor) {
 TEST(FieldSampler, AuditAndSummaryTellWhatTheFactorizationDid) {
   const std::vector<Vec3> points = sphere_points(3);
   const FieldSampler plain(Correlation(points, exponential, Distance::euclidean()));
-  EXPECT_EQ(plain.summary().factorization, Factorization::cholesky);
-  EXPECT_EQ(plain.summary().rank, 642);
+  EXPECT_EQ(plain.summary().cholesky->factorization, Factorization::cholesky);
+  EXPECT_EQ(plain.summary().cholesky->rank, 642);
   EXPECT_LT(plain.audit().covariance_error, 1e-12);
-  EXPECT_NEAR(plain.summary().smallest_correlation, exponential.rho(2), 1e-12);
+  EXPECT_NEAR(plain.summary().cholesky->smallest_correlation, exponential.rho(2), 1e-12);
 
   const FieldSampler pivoted(Correlation(points, gaussian, Distance::euclidean()));
-  EXPECT_EQ(pivoted.summary().factorization, Factorization::pivoted_cholesky);
-  EXPECT_LT(pivoted.summary().rank, 642);
+  EXPECT_EQ(pivoted.summary().cholesky->factorization, Factorization::pivoted_cholesky);
+  EXPECT_LT(pivoted.summary().cholesky->rank, 642);
   EXPECT_LT(pivoted.audit().covariance_error, 2e-8);
   EXPECT_GT(pivoted.citations().size(), plain.citations().size());
 
   const Autocorrelation wide({.family = Family::gaussian, .length = 1.0});
   const FieldSampler clipped(Correlation(points, wide, Distance::great_circle(points)));
-  EXPECT_EQ(clipped.summary().factorization, Factorization::eigenvalue);
-  EXPECT_GE(clipped.audit().covariance_error, clipped.summary().variance_change - 1e-12);
-  EXPECT_LE(clipped.audit().covariance_error, -*clipped.summary().smallest_eigenvalue + 1e-9);
+  EXPECT_EQ(clipped.summary().cholesky->factorization, Factorization::eigenvalue);
+  EXPECT_GE(clipped.audit().covariance_error, clipped.summary().cholesky->variance_change - 1e-12);
+  EXPECT_LE(clipped.audit().covariance_error,
+            -*clipped.summary().cholesky->smallest_eigenvalue + 1e-9);
 }
 
 TEST(FieldSampler, OneAndTwoPoints) {
@@ -205,7 +206,7 @@ TEST(FieldSampler, OneAndTwoPoints) {
   EXPECT_EQ(single.heights(4, 5), white_noise_sequence({4, 5}, 1));
   EXPECT_EQ(single.audit().n_pairs, 0);
   EXPECT_EQ(single.audit().covariance_error, 0);
-  EXPECT_EQ(single.summary().smallest_correlation, 1);
+  EXPECT_EQ(single.summary().cholesky->smallest_correlation, 1);
 
   // d_0 = w_0, d_1 = rho w_0 + sqrt(1 - rho^2) w_1
   const std::vector<Vec3> two = {{0, 0, 0}, {0.4, 0, 0}};
@@ -225,7 +226,7 @@ TEST(FieldSampler, InfiniteLengthMakesStreaks) {
   const Distance streaks = Distance::stretched({.lengths = {0.1, inf, 1.0}});
   const Autocorrelation autocorrelation({.family = Family::exponential, .length = 0.1});
   const FieldSampler sampler(Correlation(points, autocorrelation, streaks));
-  EXPECT_EQ(sampler.summary().rank, divisions + 1);
+  EXPECT_EQ(sampler.summary().cholesky->rank, divisions + 1);
   const std::vector<double> d = sampler.heights(0, 0);
   for (std::size_t i = 1; i < points.size(); ++i)
     if (points[i][0] == points[i - 1][0]) {
@@ -259,10 +260,10 @@ TEST(FieldSampler, RefusesInputOutOfRange) {
 }
 
 TEST(FieldNames, AreThoseOfTheCommandLineAndReport) {
-  EXPECT_EQ(method_from_name("auto"), Method::cholesky);
-  EXPECT_EQ(method_from_name(name(Method::cholesky)), Method::cholesky);
-  for (const char* unknown : {"", "lattice", "Cholesky", "auto "})
-    EXPECT_NE(message_of([&] { method_from_name(unknown); }).find("auto or cholesky"),
+  for (const Method method : {Method::automatic, Method::cholesky, Method::lattice})
+    EXPECT_EQ(method_from_name(name(method)), method);
+  for (const char* unknown : {"", "lattices", "Cholesky", "auto "})
+    EXPECT_NE(message_of([&] { method_from_name(unknown); }).find("auto, cholesky or lattice"),
               std::string::npos);
   EXPECT_EQ(name(Factorization::cholesky), "cholesky");
   EXPECT_EQ(name(Factorization::pivoted_cholesky), "pivoted-cholesky");

@@ -61,10 +61,10 @@ AutocorrelationMatrix with_round_off(const AutocorrelationMatrix& matrix, std::u
           }};
 }
 
-PreparedField prepared(const std::vector<Vec3>& points, const Autocorrelation& autocorrelation,
+CholeskyField prepared(const std::vector<Vec3>& points, const Autocorrelation& autocorrelation,
                        const Distance& distance) {
   const Correlation correlation(points, autocorrelation, distance);
-  return prepare_cholesky(autocorrelation_matrix(correlation));
+  return factorize_correlation(autocorrelation_matrix(correlation));
 }
 
 struct Case {
@@ -86,7 +86,7 @@ TEST_P(EveryFamily, FactorMultipliesBackToTheAutocorrelation) {
   const Distance distance = GetParam().distance == DistanceKind::euclidean
                                 ? Distance::euclidean()
                                 : Distance::great_circle(points);
-  const PreparedField field = prepared(points, autocorrelation, distance);
+  const CholeskyField field = prepared(points, autocorrelation, distance);
   EXPECT_EQ(field.summary.factorization, GetParam().factorization)
       << name(field.summary.factorization);
   EXPECT_EQ(field.summary.rank, static_cast<Index>(field.factor.rank()));
@@ -131,8 +131,8 @@ TEST(CholeskyMethod, IndefiniteMatrixTakesTheEigenvalues) {
   const std::vector<Vec3> points = sphere_points(3);
   const Autocorrelation autocorrelation(options(Family::gaussian, 1.0));
   const Distance distance = Distance::great_circle(points);
-  const PreparedField field = prepared(points, autocorrelation, distance);
-  const FieldSummary& summary = field.summary;
+  const CholeskyField field = prepared(points, autocorrelation, distance);
+  const CholeskySummary& summary = field.summary;
   EXPECT_EQ(summary.factorization, Factorization::eigenvalue);
   EXPECT_GT(summary.negative_eigenvalues, 0);
   EXPECT_GT(summary.rank, 0);
@@ -163,7 +163,7 @@ TEST(CholeskyMethod, NothingIsHalfWayNearTheIndefinite) {
     const Autocorrelation autocorrelation(options(Family::gaussian, length));
     const Correlation correlation(points, autocorrelation, distance);
     const AutocorrelationMatrix matrix = autocorrelation_matrix(correlation);
-    const PreparedField field = prepare_cholesky(matrix);
+    const CholeskyField field = factorize_correlation(matrix);
     const double error = largest_error(field.factor, points, autocorrelation, distance);
     if (field.summary.factorization == Factorization::eigenvalue) {
       ++n_eigenvalue;
@@ -172,7 +172,7 @@ TEST(CholeskyMethod, NothingIsHalfWayNearTheIndefinite) {
       ++n_pivoted;
       EXPECT_LT(error, 2e-8) << length;
     }
-    const PreparedField again = prepare_cholesky(with_round_off(matrix, 1));
+    const CholeskyField again = factorize_correlation(with_round_off(matrix, 1));
     EXPECT_EQ(again.summary.factorization, field.summary.factorization) << length;
     EXPECT_EQ(again.summary.rank, field.summary.rank) << length;
     EXPECT_LT(largest_difference(field.factor.heights({0, 0}), again.factor.heights({0, 0})), 1e-8)
@@ -184,11 +184,11 @@ TEST(CholeskyMethod, NothingIsHalfWayNearTheIndefinite) {
 
 /// Largest change of a height by round-off in R, over some realizations.
 double sensitivity(const AutocorrelationMatrix& matrix, Factorization expected) {
-  const PreparedField field = prepare_cholesky(matrix);
+  const CholeskyField field = factorize_correlation(matrix);
   EXPECT_EQ(field.summary.factorization, expected) << name(field.summary.factorization);
   double largest = 0;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    const PreparedField other = prepare_cholesky(with_round_off(matrix, seed));
+    const CholeskyField other = factorize_correlation(with_round_off(matrix, seed));
     EXPECT_EQ(other.summary.factorization, expected);
     for (std::uint64_t realization = 0; realization < 3; ++realization)
       largest = std::max(largest, largest_difference(field.factor.heights({0, realization}),
@@ -280,7 +280,7 @@ TEST(CholeskyMethod, KeepsOnlyTheRank) {
                                        for (std::size_t i = 0; i < below.size(); ++i)
                                          below[i] = (i + 1) % 10 == 0 ? 1.0 : 0.0;
                                      }};
-  const PreparedField field = prepare_cholesky(matrix);
+  const CholeskyField field = factorize_correlation(matrix);
   EXPECT_EQ(field.summary.rank, 10);
   const std::vector<double> heights = field.factor.heights({0, 0});
   // Points that correlate fully get one height, to the separation of ties of 1e-10.
@@ -293,7 +293,7 @@ TEST(CholeskyMethod, AMatrixThatIsNotOneIsANumericalError) {
                                        for (double& r : below)
                                          r = std::numeric_limits<double>::quiet_NaN();
                                      }};
-  EXPECT_THROW(prepare_cholesky(matrix), NumericalError);
+  EXPECT_THROW(factorize_correlation(matrix), NumericalError);
 }
 
 }  // namespace

@@ -64,7 +64,7 @@ void expect_sample_covariance(const FieldSampler& sampler, const Eigen::MatrixXd
 
 void expect_exact_field(const Correlation& correlation) {
   const FieldSampler sampler(correlation);
-  EXPECT_NE(sampler.summary().factorization, Factorization::eigenvalue);
+  EXPECT_NE(sampler.summary().cholesky->factorization, Factorization::eigenvalue);
   EXPECT_LT(sampler.audit().covariance_error, 2e-8);
   expect_sample_covariance(sampler, matrix_of(correlation));
 }
@@ -93,8 +93,8 @@ TEST(FieldByDistance, MinimumImageHasTheClippedLaw) {
   const Correlation wide(points, Autocorrelation({.length = 0.4}),
                          Distance::minimum_image(Vec3(1, 1, 0)));
   const FieldSampler sampler(wide);
-  EXPECT_EQ(sampler.summary().factorization, Factorization::eigenvalue);
-  EXPECT_GT(sampler.summary().negative_eigenvalues, 0);
+  EXPECT_EQ(sampler.summary().cholesky->factorization, Factorization::eigenvalue);
+  EXPECT_GT(sampler.summary().cholesky->negative_eigenvalues, 0);
   const Eigen::MatrixXd law = clipped(matrix_of(wide));
   for (Index i = 0; i < 200; i += 7)
     for (Index j = 0; j < 200; j += 3) EXPECT_NEAR(sampler.covariance(i, j), law(i, j), 1e-9);
@@ -131,7 +131,7 @@ TEST(FieldByDistance, GaussianOnAClosedCurveHasTheClippedLaw) {
   const Correlation correlation(around.places, Autocorrelation({.length = 1.0}),
                                 Distance::curve(around.closed_lengths));
   const FieldSampler sampler(correlation);
-  EXPECT_EQ(sampler.summary().factorization, Factorization::eigenvalue);
+  EXPECT_EQ(sampler.summary().cholesky->factorization, Factorization::eigenvalue);
   expect_sample_covariance(sampler, clipped(matrix_of(correlation)));
 }
 
@@ -153,9 +153,10 @@ TEST(FieldByDistance, TableHasItsFitOrItsInterpolant) {
   const Correlation correlation(points, interpolant, Distance::euclidean());
   const FieldSampler sampler(correlation);
   const Eigen::MatrixXd matrix = matrix_of(correlation);
-  expect_sample_covariance(sampler, sampler.summary().factorization == Factorization::eigenvalue
-                                        ? clipped(matrix)
-                                        : matrix);
+  expect_sample_covariance(sampler,
+                           sampler.summary().cholesky->factorization == Factorization::eigenvalue
+                               ? clipped(matrix)
+                               : matrix);
   EXPECT_THROW(Correlation(points, interpolant, Distance::periodic(Vec3(1, 1, 0))), InputError);
   EXPECT_NO_THROW(Correlation(points, interpolant, Distance::minimum_image(Vec3(1, 1, 0))));
 }

@@ -199,7 +199,7 @@ TEST(Report, ExpectsTheSqOfTheFieldThatIsSampled) {
   options.surfaces[0].distance = DistanceKind::curve;
   options.realizations = 300;
   const Report report = roughen(mesh, options, [](const RoughMesh&, Report&) {});
-  EXPECT_EQ(report.surfaces[0].field.factorization, Factorization::eigenvalue);
+  EXPECT_EQ(report.surfaces[0].field.cholesky->factorization, Factorization::eigenvalue);
   double mean = 0;
   for (const RealizationReport& r : report.realizations) mean += r.surfaces[0].heights.sq / 300;
   const SurfaceStatistics& s = report.realizations[0].surfaces[0];
