@@ -21,13 +21,21 @@ std::size_t line_at(std::string_view text, std::size_t place) {
                  std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(place), '\n'));
 }
 
-bool begins_key(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-         c == '-' || c == '"' || c == '\'';
+bool is_ascii(char c) { return static_cast<unsigned char>(c) < 0x80; }
+
+bool is_letter_or_digit(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
 }
 
-// Follows TOML as far as brackets, dots and what hides them: strings and comments. Where a text is
-// no TOML it may lose its way, but not before toml++ gives up.
+bool begins_key(char c) {
+  return is_letter_or_digit(c) || c == '_' || c == '-' || c == '"' || c == '\'';
+}
+
+// Reads the signs of TOML without their meaning. toml++ 3.3 looks for space around keys and values,
+// where signs beyond ASCII lead it astray; so this must know as well as toml++ where a text or a
+// comment begins and ends. Where a text is no TOML it may lose its way, but not before toml++ gives
+// up: outside of texts and comments, only what may begin, end or part keys and values is let
+// through.
 class TomlScan {
  public:
   TomlScan(std::string_view text, const std::string& source) : text_(text), source_(source) {}
@@ -38,39 +46,133 @@ class TomlScan {
   }
 
  private:
+  enum class Due { line, key, value, nothing };  ///< what may begin here; a line: a key or a header
+
   char here(std::size_t ahead = 0) const {
     return at_ + ahead < text_.size() ? text_[at_ + ahead] : '\0';
   }
 
+  char inside() const { return open_.empty() ? '\0' : open_.back(); }
+
   void step() {
-    const char c = here();
-    if (c == '"' || c == '\'') return skip_string(c);
-    if (c == '#') return skip_to_line_end();
     require_ascii();
-    if (c == '[' && in_key_ && open_.empty()) check_header();
-    if (c == '[' || c == '{') open_.push_back(c);
-    if (c == ']' || c == '}') close(c);
-    if (c == '\n' || c == '=' || c == ',' || c == '[' || c == '{') n_dots_ = 0;
-    if (c == '.') ++n_dots_;
-    if (c == '=') in_key_ = false;
-    if (c == '\n' && open_.empty()) in_key_ = true;
+    const char c = here();
+    if (c == '#') return skip_to_line_end();
+    if (c == '"' || c == '\'') return pass_text(c);
+    if (in_word(c)) return pass_word();
+    pass_sign(c);
     if (open_.size() > deepest_job || n_dots_ >= deepest_job)
       refuse_depth(source_, line_at(text_, at_));
     ++at_;
   }
 
+  void pass_sign(char c) {
+    switch (c) {
+      case ' ':
+      case '\t':
+      case '\r':
+        return;
+      case '\n':
+        return end_line();
+      case '.':
+        return part_key();
+      case '=':
+        return part_pair();
+      case ',':
+        return part_list();
+      case '[':
+      case '{':
+        return open(c);
+      case ']':
+      case '}':
+        return close(c);
+      default:
+        refuse_sign(c);
+    }
+  }
+
+  void end_line() {
+    if (open_.empty()) begin_pair(Due::line);
+  }
+
+  void begin_pair(Due due) {
+    due_ = due;
+    in_key_ = true;
+    n_dots_ = 0;
+  }
+
+  void part_key() {
+    if (!in_key_ || due_ != Due::nothing) refuse_sign('.');
+    due_ = Due::key;
+    ++n_dots_;
+  }
+
+  void part_pair() {
+    if (!in_key_ || due_ != Due::nothing || inside() == header) refuse_sign('=');
+    due_ = Due::value;
+    in_key_ = false;
+  }
+
+  void part_list() {
+    if (due_ != Due::nothing || (inside() != '[' && inside() != '{')) refuse_sign(',');
+    if (inside() == '[')
+      due_ = Due::value;
+    else
+      begin_pair(Due::key);
+  }
+
+  void open(char bracket) {
+    if (bracket == '[' && due_ == Due::line) return open_header();
+    if (due_ != Due::value) refuse_sign(bracket);
+    open_.push_back(bracket);
+    if (bracket == '{') begin_pair(Due::key);
+  }
+
+  void open_header() {
+    check_header();
+    open_.push_back(header);
+    if (here(1) == '[') {
+      open_.push_back(header);
+      ++at_;
+    }
+    begin_pair(Due::key);
+  }
+
   // toml++ 3.3 takes for granted that no other bracket stands where a value is due.
   void close(char bracket) {
-    const char due = open_.empty() ? '\0' : open_.back() == '[' ? ']' : '}';
+    const char due = open_.empty() ? '\0' : inside() == '{' ? '}' : ']';
     if (bracket != due)
       throw FormatError(fmt::format("{}:{}: not TOML: {} closes what was not opened", source_,
                                     line_at(text_, at_), bracket));
     open_.pop_back();
+    due_ = Due::nothing;
+    in_key_ = inside() == header;
+  }
+
+  bool in_word(char c) const {
+    return is_letter_or_digit(c) || c == '_' || c == '-' ||
+           (!in_key_ && (c == '.' || c == '+' || c == ':'));
+  }
+
+  // A word too many is left for toml++ to tell: it may be the second half of a date.
+  void pass_word() {
+    while (in_word(here())) ++at_;
+    due_ = Due::nothing;
+    if (!in_key_) require_end_of_value();
+  }
+
+  // toml++ 3.3 takes all signs up to these for a part of the number.
+  void require_end_of_value() const {
+    const bool ends = at_ == text_.size() ||
+                      std::string_view(" \t\r\n,]}#").find(here()) != std::string_view::npos;
+    if (!ends && is_ascii(here())) refuse_sign(here());
   }
 
   void skip_to_line_end() { at_ = std::min(text_.find('\n', at_), text_.size()); }
 
-  void skip_string(char quote) {
+  void pass_text(char quote) {
+    if (due_ == Due::nothing) refuse_sign(quote);
+    due_ = Due::nothing;
     const bool is_long = here(1) == quote && here(2) == quote;
     at_ += is_long ? 3 : 1;
     for (; at_ < text_.size(); ++at_) {
@@ -90,15 +192,16 @@ class TomlScan {
   void skip_escape() {
     ++at_;
     const std::size_t next = text_.find_first_not_of(" \t\r\n", at_);
-    if (next == at_ || next == text_.npos) return;
+    if (next == text_.npos) return;
+    const bool is_space = next > at_;
     at_ = next;
     require_ascii();
-    --at_;
+    if (is_space) --at_;
   }
 
   // Where toml++ 3.3 looks for space, some letters beyond ASCII lead it astray.
   void require_ascii() const {
-    if (static_cast<unsigned char>(here()) < 0x80) return;
+    if (is_ascii(here())) return;
     throw FormatError(fmt::format(
         "{}:{}: not TOML: a sign beyond ASCII, perhaps a no-break space, where a key, a number or "
         "a space is expected; write texts between quotes",
@@ -110,16 +213,36 @@ class TomlScan {
     std::size_t next = at_ + (here(1) == '[' ? 2 : 1);
     next = text_.find_first_not_of(" \t", next);
     if (next == text_.npos || begins_key(text_[next]) || text_[next] == ']' ||
-        static_cast<unsigned char>(text_[next]) >= 0x80)  // told in its place
+        !is_ascii(text_[next]))  // told in its place
       return;
     throw FormatError(fmt::format("{}:{}: not TOML: a table without a name; write [[surface]]",
                                   source_, line_at(text_, at_)));
   }
 
+  [[noreturn]] void refuse_sign(char c) const {
+    const bool is_quote = c == '"' || c == '\'', is_printed = c > ' ' && c < '\x7f';
+    const std::string sign = is_quote     ? "text in quotes"
+                             : is_printed ? std::string(1, c)
+                                          : fmt::format("control character {}", int{c});
+    throw FormatError(fmt::format("{}:{}: not TOML: {} where none is expected, but {}", source_,
+                                  line_at(text_, at_), sign, expected()));
+  }
+
+  std::string_view expected() const {
+    if (due_ == Due::value) return "a value";
+    if (due_ != Due::nothing) return "a key";
+    if (inside() == header) return "]";
+    if (in_key_) return "=";
+    if (open_.empty()) return "the end of the line";
+    return inside() == '[' ? "a comma or ]" : "a comma or }";
+  }
+
+  static constexpr char header = 'h';  ///< among open_, of a header's bracket
   std::string_view text_;
   const std::string& source_;
   std::size_t at_ = 0;
-  bool in_key_ = true;      ///< before the = of a line
+  Due due_ = Due::line;
+  bool in_key_ = true;      ///< before the = of a pair, or in a header
   std::string open_;        ///< brackets that are
   std::size_t n_dots_ = 0;  ///< of one key
 };

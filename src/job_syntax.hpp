@@ -16,9 +16,9 @@ inline constexpr std::size_t deepest_job =
 /// @throws FormatError  nested more than `deepest_job` deep
 void check_json_syntax(std::string_view text, const std::string& source);
 
-/// @throws FormatError  likewise, brackets or parts of a key; a table header without a name; signs
-/// beyond
-///                      ASCII outside of texts
+/// @throws FormatError  likewise, brackets or parts of a key; a table header without a name; a text
+///                      where neither a key nor a value may begin; outside of texts and comments,
+///                      signs beyond ASCII or that TOML does not use
 void check_toml_syntax(std::string_view text, const std::string& source);
 
 /// Without the signs that would break the line of a message.

@@ -74,8 +74,10 @@ TEST(JobSyntax, ATableWithoutANameIsRefused) {
 
 TEST(JobSyntax, SignsBeyondAsciiStandInTextsAndCommentsOnly) {
   const std::string e = "\xc3\xa9";
-  for (const std::string& text : {e, "[[" + e + "]]", "rms = 1 " + e, "rms" + e + " = 1",
-                                  "output = \"\"\"\\ \n " + e + "\"\"\""})
+  for (const std::string& text :
+       {e, "[[" + e + "]]", "rms = 1 " + e, "rms" + e + " = 1",
+        "output = \"\"\"\\ \n " + e + "\"\"\"", "output = \"\"\"\\" + e + "\"\"\"", "rms = 1" + e,
+        "rms = +\n" + e})
     EXPECT_NE(message_of<FormatError>(text).find("beyond ASCII"), std::string::npos) << text;
   for (const std::string& text :
        {"\xef\xbb\xbf# " + e + "\noutput = '" + e + "'", "output = \"\\\"" + e + "\"",
@@ -86,6 +88,38 @@ TEST(JobSyntax, SignsBeyondAsciiStandInTextsAndCommentsOnly) {
 TEST(JobSyntax, BracketsMatch) {
   for (const std::string text : {"length = [0,} 1]", "x = {a = [1}]", "x = {]", "x = 1]", "]", "}"})
     EXPECT_NE(message_of<FormatError>(text).find("was not opened"), std::string::npos) << text;
+}
+
+TEST(JobSyntax, TextsBeginWhereAKeyOrAValueMay) {
+  for (const std::string text :
+       {"x = 6+8u\"-'\n", "x = 1.\"a\"", "x = 1=\"a\"", "x = 1[\"a\"]", "x = 1{\"a\" = 1}",
+        "x = 1'a'", "x = true.'a'", "a\"b\" = 1", "a 'b' = 1", "x = [1 'a']", "x = 'a' 'b'",
+        "[a'b']", "[a] 'b'", "x = {a = 1 'b'}"})
+    EXPECT_NE(message_of<FormatError>(text).find("none is expected"), std::string::npos) << text;
+  for (const std::string text :
+       {"'output'='a'", "'output'\t= \"a\" # 'b'", "unit = 'm'\r\noutput = 'a'\r\n",
+        "unit = \"\"\"m\"\"\"\n\"output\" = '''a'''", "[[surface]]\n'group' = [ 'a',\n 'b' ]",
+        "[[ surface ]] # 'a'\n\"group\" = [\"a\", # 'b\n]", "[['surface']]\nrms = 1.5e+3\n",
+        "surface = [{ 'rms' = 1, \"length\" = [1] }]"})
+    EXPECT_EQ(message_of<FormatError>(text), "") << text;
+}
+
+TEST(JobSyntax, SignsStandWhereTomlHasThem) {
+  using namespace std::string_literals;
+  for (const std::string& text :
+       {"= 1"s,     ", 'a'"s,   "a..b = 1"s,  ".a = 1"s, "a == 1"s,   "a = 1 = 2"s, "a = 1, b = 2"s,
+        "a = [,]"s, "a = {,}"s, "a = [1]{}"s, "a [1]"s,  "a: 1"s,     "a = @b"s,    "a = b\\c"s,
+        "a = (1)"s, "a = 1\0"s, "a\0 = 1"s,   "\x01"s,   "a = \x7f"s, "a = [1\v]"s, "a = 1\f"s,
+        "a = 1;"s,  "[a = 1]"s, "[a,b]"s,     "a = %1"s})
+    EXPECT_NE(message_of<FormatError>(text).find("none is expected"), std::string::npos) << text;
+  for (const std::string& text : {"a = 'b\0'"s, "a = \"b\x01\""s, "a = '''\x7f'''"s, "# \0"s})
+    EXPECT_FALSE(message_of<FormatError>(text).empty()) << text;
+}
+
+TEST(JobSyntax, DatesAreTomlButNoValues) {
+  for (const std::string text : {"x = 1979-05-27", "x = 1979-05-27 07:32:00.5-07:00",
+                                 "x = 07:32:00", "x = [1979-05-27 07:32:00]"})
+    EXPECT_NE(message_of<InputError>(text).find("dates"), std::string::npos) << text;
 }
 
 TEST(JobSyntax, MessagesAreShortAndInOneLine) {
