@@ -31,6 +31,42 @@ bool begins_key(char c) {
   return is_letter_or_digit(c) || c == '_' || c == '-' || c == '"' || c == '\'';
 }
 
+// A run of digits, with underscores between.
+std::size_t end_of_digits(std::string_view word, std::size_t begin, std::string_view digits) {
+  if (begin >= word.size() || digits.find(word[begin]) == digits.npos) return word.npos;
+  return std::min(word.find_first_not_of(std::string(digits) + '_', begin), word.size());
+}
+
+bool is_whole_number(std::string_view word) {
+  for (const auto& [prefix, digits] : {std::pair{"0x", "0123456789abcdefABCDEF"},
+                                       std::pair{"0o", "01234567"}, std::pair{"0b", "01"}})
+    if (word.starts_with(prefix)) return end_of_digits(word, 2, digits) == word.size();
+  return false;
+}
+
+bool is_decimal_number(std::string_view word) {
+  static constexpr std::string_view digits = "0123456789";
+  std::size_t end = end_of_digits(word, 0, digits);
+  if (end < word.size() && word[end] == '.') end = end_of_digits(word, end + 1, digits);
+  if (end < word.size() && (word[end] == 'e' || word[end] == 'E')) {
+    ++end;
+    if (end < word.size() && (word[end] == '+' || word[end] == '-')) ++end;
+    end = end_of_digits(word, end, digits);
+  }
+  return end == word.size();
+}
+
+bool is_number_or_truth(std::string_view word) {
+  if (word == "true" || word == "false" || is_whole_number(word)) return true;
+  if (word.starts_with('+') || word.starts_with('-')) word.remove_prefix(1);
+  return word == "inf" || word == "nan" || is_decimal_number(word);
+}
+
+bool begins_date(std::string_view word) {
+  const std::size_t end = word.find_first_not_of("0123456789");
+  return (end == 4 && word[end] == '-') || (end == 2 && word[end] == ':');
+}
+
 // Reads the signs of TOML without their meaning. toml++ 3.3 looks for space around keys and values,
 // where signs beyond ASCII lead it astray; so this must know as well as toml++ where a text or a
 // comment begins and ends. Where a text is no TOML it may lose its way, but not before toml++ gives
@@ -154,11 +190,31 @@ class TomlScan {
            (!in_key_ && (c == '.' || c == '+' || c == ':'));
   }
 
-  // A word too many is left for toml++ to tell: it may be the second half of a date.
   void pass_word() {
+    const std::size_t begin = at_;
     while (in_word(here())) ++at_;
+    if (!in_key_) {
+      require_end_of_value();
+      require_value(text_.substr(begin, at_ - begin));
+    }
     due_ = Due::nothing;
-    if (!in_key_) require_end_of_value();
+  }
+
+  // toml++ 3.3 takes some broken dates for granted; no option needs one.
+  void require_value(std::string_view word) const {
+    if (due_ != Due::value)
+      throw FormatError(fmt::format("{}:{}: not TOML: {:.40} where {} is expected", source_,
+                                    line_at(text_, at_), word, expected()));
+    if (begins_date(word))
+      throw InputError(
+          fmt::format("{}:{}: {:.40}: dates and times are no option values; write a "
+                      "number, true or false, or text between quotes",
+                      source_, line_at(text_, at_), word));
+    if (!is_number_or_truth(word))
+      throw FormatError(
+          fmt::format("{}:{}: {:.40} is neither a number nor true or false; numbers have digits on "
+                      "both sides of the point, texts stand between quotes",
+                      source_, line_at(text_, at_), word));
   }
 
   // toml++ 3.3 takes all signs up to these for a part of the number.

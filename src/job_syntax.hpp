@@ -18,7 +18,9 @@ void check_json_syntax(std::string_view text, const std::string& source);
 
 /// @throws FormatError  likewise, brackets or parts of a key; a table header without a name; a text
 ///                      where neither a key nor a value may begin; outside of texts and comments,
-///                      signs beyond ASCII or that TOML does not use
+///                      signs beyond ASCII, signs that TOML has not there, and values that are no
+///                      numbers or truths
+/// @throws InputError   dates and times
 void check_toml_syntax(std::string_view text, const std::string& source);
 
 /// Without the signs that would break the line of a message.

@@ -76,8 +76,7 @@ TEST(JobSyntax, SignsBeyondAsciiStandInTextsAndCommentsOnly) {
   const std::string e = "\xc3\xa9";
   for (const std::string& text :
        {e, "[[" + e + "]]", "rms = 1 " + e, "rms" + e + " = 1",
-        "output = \"\"\"\\ \n " + e + "\"\"\"", "output = \"\"\"\\" + e + "\"\"\"", "rms = 1" + e,
-        "rms = +\n" + e})
+        "output = \"\"\"\\ \n " + e + "\"\"\"", "output = \"\"\"\\" + e + "\"\"\"", "rms = 1" + e})
     EXPECT_NE(message_of<FormatError>(text).find("beyond ASCII"), std::string::npos) << text;
   for (const std::string& text :
        {"\xef\xbb\xbf# " + e + "\noutput = '" + e + "'", "output = \"\\\"" + e + "\"",
@@ -116,10 +115,22 @@ TEST(JobSyntax, SignsStandWhereTomlHasThem) {
     EXPECT_FALSE(message_of<FormatError>(text).empty()) << text;
 }
 
-TEST(JobSyntax, DatesAreTomlButNoValues) {
-  for (const std::string text : {"x = 1979-05-27", "x = 1979-05-27 07:32:00.5-07:00",
-                                 "x = 07:32:00", "x = [1979-05-27 07:32:00]"})
-    EXPECT_NE(message_of<InputError>(text).find("dates"), std::string::npos) << text;
+TEST(JobSyntax, WordsAreNumbersOrTruths) {
+  for (const std::string text :
+       {"x = gaussian", "x = .5",       "x = 1.",    "x = 1.e3", "x = 1e",
+        "x = 1e+",      "x = 0x",       "x = 0b2",   "x = 0xg",  "x = True",
+        "x = +true",    "x = infinite", "x = --1",   "x = 1-2",  "x = 1+2",
+        "x = 1e5e5",    "x = 1.2.3",    "x = 0x1p3", "x = _1",   "x = [1:2]"})
+    EXPECT_NE(message_of<FormatError>(text).find("neither a number"), std::string::npos) << text;
+  for (const std::string text : {"x = 1979-05-27", "x = 1979-05-27 07:32:00", "x = 07:32:00",
+                                 "x = [1979-05-27T07:32:00Z]", "x = 1979-05-27T:"})
+    EXPECT_NE(message_of<InputError>(text).find("dates and times"), std::string::npos) << text;
+  for (const std::string text : {"x = 1 2", "x = [1 2]", "x = {a = 1 2}", "x = 'a' true"})
+    EXPECT_NE(message_of<FormatError>(text).find(" is expected"), std::string::npos) << text;
+  for (const std::string text :
+       {"rms = 1", "rms = +1.5e-3", "rms = 1E2", "rms = 1_000.5_0", "rms = 0x1F", "rms = 0o17",
+        "rms = 0b1_0", "rms = inf", "rms = -nan", "flip = true", "flip = false"})
+    EXPECT_EQ(message_of<FormatError>(text), "") << text;
 }
 
 TEST(JobSyntax, MessagesAreShortAndInOneLine) {
