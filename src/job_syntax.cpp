@@ -323,12 +323,4 @@ void check_toml_syntax(std::string_view text, const std::string& source) {
   TomlScan(text, source).run();
 }
 
-std::string one_line(std::string_view text) {
-  std::string line(text);
-  std::replace_if(
-      line.begin(), line.end(),
-      [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }, '?');
-  return line;
-}
-
 }  // namespace roughmesh::detail

@@ -23,7 +23,4 @@ void check_json_syntax(std::string_view text, const std::string& source);
 /// @throws InputError   dates and times
 void check_toml_syntax(std::string_view text, const std::string& source);
 
-/// Without the signs that would break the line of a message.
-std::string one_line(std::string_view text);
-
 }  // namespace roughmesh::detail

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "job_syntax.hpp"
 #include "json_numbers.hpp"
 
 namespace roughmesh::detail {
@@ -56,8 +55,7 @@ class MaskTable {
 
   void refuse_other_keys() const {
     for (const auto& [key, value] : table_->items())
-      if (!known_.contains(key))
-        throw WrongMask(fmt::format("a mask without the key {}", one_line(key)));
+      if (!known_.contains(key)) throw WrongMask(fmt::format("a mask without the key {}", key));
   }
 
  private:

@@ -52,8 +52,8 @@ json parse_toml(const std::string& text, const std::string& source) {
   try {
     return toml_to_json(toml::parse(text), source);
   } catch (const toml::parse_error& error) {
-    throw FormatError(fmt::format("{}:{}: not TOML: {}", source, error.source().begin.line,
-                                  detail::one_line(error.description())));
+    throw FormatError(
+        fmt::format("{}:{}: not TOML: {}", source, error.source().begin.line, error.description()));
   }
 }
 

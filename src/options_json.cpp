@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "job_syntax.hpp"
 #include "json_numbers.hpp"
 #include "mask_json.hpp"
 
@@ -165,7 +164,7 @@ class TableReader {
         throw InputError(
             fmt::format("{}: unknown key {}; `roughmesh roughen --help` lists the options, "
                         "written with _ for -",
-                        place_, one_line(key)));
+                        place_, key));
   }
 
  private:

@@ -8,10 +8,11 @@
 namespace roughmesh {
 
 /// Base of every exception roughmesh throws. The message is one line that names the thing, the
-/// value and the remedy; it has no final newline.
+/// value and the remedy; it has no final newline. Values come from outside: `?` stands for what
+/// control characters they hold.
 class Error : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit Error(std::string message);
 };
 
 /// An argument, option, input or resource that the caller can change: a length of 0, a group that
