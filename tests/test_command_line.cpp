@@ -12,9 +12,11 @@
 #include "roughmesh/mesh_io.hpp"
 #include "roughmesh/options.hpp"
 
+#include "support/cells.hpp"
 #include "support/files.hpp"
 #include "support/meshes.hpp"
 #include "support/process.hpp"
+#include "support/second_order.hpp"
 
 using namespace roughmesh;
 using test::Outcome;
@@ -45,6 +47,26 @@ void expect_failure(const Outcome& outcome, int exit_code, const std::string& wh
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1)
       << what << ": " << outcome.err;
   EXPECT_EQ(outcome.out, "") << what;
+}
+
+/// A box of second order, periodic along x and y, with links for all nodes of the sides.
+Mesh linked_box() {
+  Mesh mesh = test::second_order(test::cell_box(ElementShape::tetrahedron, 4), true);
+  for (int axis = 0; axis < 2; ++axis) {
+    PeriodicLink link{2, axis + 11, axis + 21, {}, {}};
+    for (Index slave = 0; slave < mesh.n_nodes(); ++slave)
+      for (Index master = 0; master < mesh.n_nodes(); ++master)
+        if (mesh.nodes[slave] - mesh.nodes[master] == Vec3::Unit(axis))
+          link.nodes.emplace_back(slave, master);
+    mesh.periodic_links.push_back(link);
+  }
+  return mesh;
+}
+
+nlohmann::json report_but_for_timings(const std::filesystem::path& path) {
+  nlohmann::json report = nlohmann::json::parse(test::read_bytes(path));
+  report.erase("timings");
+  return report;
 }
 
 }  // namespace
@@ -88,6 +110,39 @@ TEST_F(CommandLine, AReportReproducesItsMeshByteForByte) {
   // Arguments override the job.
   EXPECT_EQ(run("roughen --job job.json --seed 98 -o other.msh").exit_code, 0);
   EXPECT_NE(test::read_bytes(folder / "other.msh"), bytes);
+}
+
+// What the run finds out itself (distance and period of the links, method, threads) stands in the
+// report, and given back leads to the same run.
+TEST_F(CommandLine, AReportReproducesARunOnALinkedMeshOfSecondOrder) {
+  write_mesh(linked_box(), folder / "box.msh");
+  const Mesh box = read_mesh(folder / "box.msh");
+  const Outcome first =
+      run("roughen box.msh -o rough_{realization}.msh --group top --rms 0.01 --length 0.5 --acf "
+          "exponential --first 3 --realizations 2 --report run.json");
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  std::filesystem::create_directory(folder / "first");
+  for (const std::string name : {"rough_3.msh", "rough_4.msh", "run.json"})
+    std::filesystem::rename(folder / name, folder / ("first/" + name));
+
+  const Outcome again = run("roughen --job first/run.json");
+  EXPECT_EQ(again.err, first.err);
+  for (const std::string name : {"rough_3.msh", "rough_4.msh"})
+    EXPECT_EQ(test::read_bytes(folder / name), test::read_bytes(folder / ("first/" + name)));
+  const nlohmann::json report = report_but_for_timings(folder / "run.json");
+  EXPECT_EQ(report, report_but_for_timings(folder / "first/run.json"));
+  EXPECT_EQ(report["request"]["distance"], "periodic");
+  EXPECT_EQ(report["request"]["period"], nlohmann::json({1.0, 1.0, 0.0}));
+
+  const Mesh rough = read_mesh(folder / "rough_4.msh");
+  std::size_t n_moved = 0;
+  ASSERT_EQ(rough.periodic_links.size(), 2U);
+  for (const PeriodicLink& link : rough.periodic_links)
+    for (const auto& [slave, master] : link.nodes) {
+      EXPECT_EQ(rough.nodes[slave].z(), rough.nodes[master].z());
+      n_moved += rough.nodes[slave] != box.nodes[slave] ? 1 : 0;
+    }
+  EXPECT_GE(n_moved, 2U * 9U);  // corners and middles of an edge of four elements, along x and y
 }
 
 TEST_F(CommandLine, TakesAnisotropicLengthsAndNumbersAsWritten) {
