@@ -77,6 +77,22 @@ void require_convergence(const Autocorrelation& autocorrelation, int n_sums) {
                   autocorrelation.shape(), n_sums, n_sums / 2.0));
 }
 
+// The images of exp(-(r / l)^p) add up to about its integral over the periodic axes, in units of
+// the cell: l^n Gamma(n / p) / p times the area of the unit sphere. Where that is large, what
+// differs from place to place is no more than round-off of the sum.
+void require_narrow(const Autocorrelation& autocorrelation, double log_cell, int n_sums) {
+  if (autocorrelation.family() != Family::stretched || n_sums == 0) return;
+  const double p = autocorrelation.shape(),
+               most = -std::log(std::numeric_limits<double>::epsilon());
+  const double log_sum = n_sums * std::log(autocorrelation.length()) + std::lgamma(n_sums / p) -
+                         std::log(p) - log_cell;
+  if (log_sum < most) return;
+  throw InputError(fmt::format(
+      "--power: {:g}; with so slow a decay the periodic field is constant; use a larger "
+      "--power, a shorter --length or --distance minimum-image",
+      p));
+}
+
 }  // namespace
 
 ImageSum::ImageSum(const Autocorrelation& autocorrelation, const Distance& distance,
@@ -84,15 +100,17 @@ ImageSum::ImageSum(const Autocorrelation& autocorrelation, const Distance& dista
     : autocorrelation_(autocorrelation) {
   set_axes(distance, extent);
   int n_sums = 0;
-  double shortest = std::numeric_limits<double>::infinity(), largest = 0;
+  double shortest = std::numeric_limits<double>::infinity(), largest = 0, log_cell = 0;
   for (const Axis& axis : axes_) {
     largest = std::max({largest, axis.period, axis.range});
     if (axis.period == 0) continue;
     ++n_sums;
     shortest = std::min(shortest, axis.period);
+    log_cell += std::log(axis.period);
   }
   require_fit(autocorrelation);
   require_convergence(autocorrelation, n_sums);
+  require_narrow(autocorrelation, log_cell, n_sums);
   negligible_distance_ = distance_of_negligible_rho(autocorrelation);
   if (n_sums > 0 && negligible_distance_ > 1.5 * shortest) {
     far_ = PanelTable(panels(shortest));
@@ -101,8 +119,10 @@ ImageSum::ImageSum(const Autocorrelation& autocorrelation, const Distance& dista
   }
   total_ = near_images(Vec3::Zero()) + far_images(Vec3::Zero());
   if (!std::isfinite(total_))
-    throw InputError(
-        "the autocorrelation reaches too many periods to be summed; use a shorter --length");
+    throw InputError(fmt::format(
+        "--length: {:g}; the autocorrelation reaches too many periods to be summed; use "
+        "a shorter one or --distance minimum-image",
+        autocorrelation.length()));
 }
 
 void ImageSum::set_axes(const Distance& distance, const Vec3& extent) {

@@ -24,16 +24,24 @@ constexpr double negligible = 42;  // exp(-42) = 6e-19
 
 double log_square(double scale, double length) { return 2 * std::log(scale / length); }
 
+// e^t - 1 - t, whose large factor nu must not meet the difference of nearly equal numbers.
+double exp_remainder(double t) {
+  if (std::abs(t) > 0.1) return std::expm1(t) - t;
+  double sum = 0;
+  for (int n = 12; n > 2; --n) sum = (1 + sum) * t / n;  // 0.1^11 / 13! is below 1e-20
+  return (1 + sum) * t * t / 2;
+}
+
 // L^2 = l^2 e^t with nu e^t ~ Gamma(nu). The largest scales end like exp(-nu e^t).
 Terms matern_terms(double nu, double length, const ScaleRange& range, int n_sums) {
   const double h = std::min(step, 0.6 / std::sqrt(nu)), constant = log_scaled_gamma(nu);
   Terms terms;
-  const auto exponent = [&](double t) { return nu * (std::expm1(t) - t); };
+  const auto exponent = [&](double t) { return nu * exp_remainder(t); };
   const auto add = [&](double t) {
     terms.push_back({h * std::exp(-exponent(t) - constant), length * std::exp(t / 2)});
   };
   const double growth = 0.5 * n_sums;  // of the sum over images, with the scale
-  for (double k = 0; k * h < 1 || exponent(k * h) - growth * k * h < negligible; ++k) add(k * h);
+  for (double k = 0; exponent(k * h) - growth * k * h < negligible; ++k) add(k * h);
   const double lowest = log_square(range.smallest, length);
   for (double k = -1; k * h > lowest && exponent(k * h) < negligible; --k) add(k * h);
   return terms;
@@ -45,16 +53,16 @@ Terms rational_quadratic_terms(double a, double length, const ScaleRange& range,
   constexpr double alike = 50;  // in t: scales 1e10 times as large as all that is summed over
   const double h = std::min(step, 0.6 / std::sqrt(a)), constant = log_scaled_gamma(a);
   Terms terms;
-  const auto exponent = [&](double t) { return a * (std::expm1(-t) + t); };
+  const auto exponent = [&](double t) { return a * exp_remainder(-t); };
   const auto add = [&](double t) {
     terms.push_back({h * std::exp(-exponent(t) - constant), length * std::exp(t / 2)});
   };
   const double lowest = log_square(range.smallest, length);
   for (double k = -1; k * h > lowest && exponent(k * h) < negligible; --k) add(k * h);
-  const double decay = a - 0.5 * n_sums;
+  const double growth = 0.5 * n_sums, decay = a - growth;
   const double highest = std::max(0.0, log_square(range.largest, length)) + alike;
-  double k = 0;
-  for (; k * h < highest && (k * h < 1 || decay * k * h < negligible + a); ++k) add(k * h);
+  for (double k = 0; k * h < highest && exponent(k * h) - growth * k * h < negligible; ++k)
+    add(k * h);
   terms.back().weight /= -std::expm1(-decay * h);
   return terms;
 }

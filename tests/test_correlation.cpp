@@ -9,10 +9,12 @@
 #include <vector>
 
 #include <Eigen/Eigenvalues>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "roughmesh/correlation.hpp"
 
+#include "scale_quadrature.hpp"
 #include "support/errors.hpp"
 
 namespace roughmesh {
@@ -106,6 +108,7 @@ std::vector<Case> every_family() {
           {"matern_1_5", matern(1.5, 0.4), xyz, 24},
           {"matern_40", matern(40, 0.4), xyz, 11},
           {"matern_1e6", matern(1e6, 0.4), xyz, 9},
+          {"matern_1e12", matern(1e12, 0.4), xyz, 9},
           {"stretched_0_3", stretched(0.3, 1e-4), Vec3(1, 0, 0), 2e5},
           {"stretched_0_7", stretched(0.7, 0.05), xy, 170},
           {"stretched_1_2", stretched(1.2, 0.4), xy, 20},
@@ -116,7 +119,11 @@ std::vector<Case> every_family() {
           {"rational_quadratic_12",
            {.family = Family::rational_quadratic, .length = 0.2, .alpha = 12},
            xy,
-           60}};
+           60},
+          {"rational_quadratic_1e12",
+           {.family = Family::rational_quadratic, .length = 0.4, .alpha = 1e12},
+           xyz,
+           9}};
 }
 
 INSTANTIATE_TEST_SUITE_P(Box, EveryFamily, testing::ValuesIn(every_family()),
@@ -179,6 +186,40 @@ TEST(PeriodicCorrelation, RationalQuadraticHasItsWholeTailInThePlane) {
       Distance::periodic(Vec3(1, 1, 0)));
   for (Index i = 0; i < correlation.n_points(); ++i)
     ASSERT_NEAR(correlation(i, 0), sum(points[i] - points[0]) / sum(Vec3::Zero()), 1e-12);
+}
+
+// They differ from the Gaussian by about 1 / shape. Their quadratures must not get longer with it.
+TEST(PeriodicCorrelation, OfShapesWithoutBoundsIsThatOfTheGaussian) {
+  const std::vector<Vec3> points = random_points(20, Vec3(1, 1, 1), 3);
+  const Distance distance = Distance::periodic(Vec3(1, 0.8, 1.2));
+  const Correlation gaussian(points, Autocorrelation({.length = 0.4}), distance);
+  for (const double shape : {1e14, 1e18, 1e100, 1e300})
+    for (const Autocorrelation& acf :
+         {Autocorrelation({.family = Family::matern, .length = 0.4, .nu = shape}),
+          Autocorrelation({.family = Family::rational_quadratic, .length = 0.4, .alpha = shape})}) {
+      EXPECT_LT(detail::scale_quadrature(acf, {0.1, 1}, 3).size(), 100U) << shape;
+      const Correlation correlation(points, acf, distance);
+      for (Index i = 1; i < correlation.n_points(); ++i)
+        EXPECT_NEAR(correlation(0, i), gaussian(0, i), 1e-12) << shape;
+    }
+}
+
+// Of exp(-(r / l)^p) in the plane the images add up to 2 pi Gamma(2 / p) (l / L)^2 / p; beyond 1e16
+// nothing is left of what differs from place to place.
+TEST(PeriodicCorrelation, OfTooSlowADecayIsRefused) {
+  const std::vector<Vec3> points = random_points(5, Vec3(1, 1, 1), 1);
+  const auto message = [&](double power, double length) {
+    return test::message_of([&] {
+      Correlation(points,
+                  Autocorrelation({.family = Family::stretched, .length = length, .power = power}),
+                  Distance::periodic(Vec3(1, 1, 0)));
+    });
+  };
+  for (const double power : {1e-300, 1e-6, 1e-3, 0.02, 0.1})
+    EXPECT_NE(message(power, 0.4).find(fmt::format("--power: {:g};", power)), std::string::npos);
+  EXPECT_NE(message(0.2, 1e6).find("--power: 0.2;"), std::string::npos);
+  for (const double power : {0.15, 0.2, 1.0, 2.0}) EXPECT_EQ(message(power, 0.4), "no error");
+  EXPECT_EQ(message(0.1, 1e-6), "no error");
 }
 
 TEST(PeriodicCorrelation, IsOneAtImagesAndSymmetric) {
