@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Classes of points that grow together.
+// Classes of points, nodes or patches that grow together.
 #pragma once
 
+#include <algorithm>
 #include <numeric>
 #include <vector>
 

@@ -2,11 +2,12 @@
 #include "roughmesh/displace.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <tuple>
 
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
+
+#include "disjoint_sets.hpp"
 
 namespace roughmesh {
 namespace {
@@ -42,8 +43,7 @@ Vec3 smallest_displacement(std::span<const Demand> demands) {
 // Moved nodes that move together: those at one point of a surface, and so on from each of them.
 class Groups {
  public:
-  Groups(std::span<const Surface> surfaces, std::span<const Index> moved) : parent_(moved.size()) {
-    std::iota(parent_.begin(), parent_.end(), 0);
+  Groups(std::span<const Surface> surfaces, std::span<const Index> moved) : sets_(moved.size()) {
     for (const Surface& surface : surfaces) {
       places_.push_back(places_of(surface, moved));
       std::vector<Index> first(surface.points.size(), -1);
@@ -52,14 +52,14 @@ class Groups {
         if (of_point < 0)
           of_point = places_.back()[i];
         else
-          join(of_point, places_.back()[i]);
+          sets_.unite(of_point, places_.back()[i]);
       }
     }
   }
 
   /// Group of node i of a surface, and of the moved node.
-  Index of(std::size_t surface, std::size_t i) { return root(places_[surface][i]); }
-  Index of(std::size_t moved) { return root(static_cast<Index>(moved)); }
+  Index of(std::size_t surface, std::size_t i) { return sets_.smallest(places_[surface][i]); }
+  Index of(std::size_t moved) { return sets_.smallest(static_cast<Index>(moved)); }
 
  private:
   static std::vector<Index> places_of(const Surface& surface, std::span<const Index> moved) {
@@ -72,16 +72,8 @@ class Groups {
     }
     return places;
   }
-  Index root(Index i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(Index a, Index b) {
-    const Index root_a = root(a), root_b = root(b);
-    parent_[std::max(root_a, root_b)] = std::min(root_a, root_b);
-  }
 
-  std::vector<Index> parent_;
+  detail::DisjointSets sets_;
   std::vector<std::vector<Index>> places_;  // of the nodes of each surface among the moved ones
 };
 

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
-#include <numeric>
 
 #include <fmt/format.h>
 
 #include "roughmesh/displace.hpp"
 
 #include "corners.hpp"
+#include "disjoint_sets.hpp"
 #include "harmonic.hpp"
 #include "messages.hpp"
 #include "second_order.hpp"
@@ -40,27 +40,12 @@ bool is_cell(const ElementBlock& block, int cell_dimension) {
   return dimension(block.type.shape) == cell_dimension;
 }
 
-// Sets of nodes that elements join.
-class NodeSets {
- public:
-  explicit NodeSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
-
-  Index root(Index node) {
-    while (parent_[node] != node) node = parent_[node] = parent_[parent_[node]];
-    return node;
-  }
-  void join(Index a, Index b) { parent_[root(a)] = root(b); }
-
- private:
-  std::vector<Index> parent_;
-};
-
 // Corners of cells that are joined to a given node without crossing a wall. Beyond walls nothing
 // moves, whatever elements there are.
 NodeFlags reached_corners(const Mesh& mesh, int cell_dimension, const detail::NodeRoles& roles,
                           const NodeFlags& on_wall) {
   const auto can_move = [&](Index node) { return roles.given[node] >= 0 || !on_wall[node]; };
-  NodeSets sets(mesh.nodes.size());
+  detail::DisjointSets sets(mesh.nodes.size());
   NodeFlags is_corner(mesh.nodes.size(), 0);
   for (const ElementBlock& block : mesh.blocks)
     for (Index e = 0; is_cell(block, cell_dimension) && e < block.size(); ++e) {
@@ -68,15 +53,15 @@ NodeFlags reached_corners(const Mesh& mesh, int cell_dimension, const detail::No
       for (const Index node : corners_of(block, e)) {
         is_corner[node] = 1;
         if (!can_move(node)) continue;
-        if (first >= 0) sets.join(node, first);
+        if (first >= 0) sets.unite(node, first);
         first = node;
       }
     }
   NodeFlags is_reached_set(mesh.nodes.size(), 0);
   for (Index node = 0; node < mesh.n_nodes(); ++node)
-    if (roles.given[node] >= 0) is_reached_set[sets.root(node)] = 1;
+    if (roles.given[node] >= 0) is_reached_set[sets.smallest(node)] = 1;
   for (Index node = 0; node < mesh.n_nodes(); ++node)
-    is_corner[node] = is_corner[node] && can_move(node) && is_reached_set[sets.root(node)];
+    is_corner[node] = is_corner[node] && can_move(node) && is_reached_set[sets.smallest(node)];
   return is_corner;
 }
 

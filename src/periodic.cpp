@@ -215,7 +215,6 @@ std::array<bool, 3> unite_equal_positions(const Surface& surface, const Vec3& pe
 }
 
 void unite_matches(const Surface& surface, const Vec3& period, detail::DisjointSets& classes) {
-  check_period(period);
   const auto is_used = unite_equal_positions(surface, period, classes);
   for (int axis = 0; axis < 3; ++axis)
     if (period[axis] > 0 && !is_used[axis])
@@ -270,19 +269,6 @@ void require_partners_of(const Surface& surface, const PeriodicPartners& partner
 }
 
 }  // namespace
-
-PeriodicPartners linked_partners(const Mesh& mesh, const Surface& surface) {
-  return periodic_partners(mesh, surface);
-}
-
-PeriodicPartners matched_partners(const Surface& surface, const Vec3& period) {
-  PeriodicPartners partners = no_partners(surface);
-  detail::DisjointSets classes(surface.points.size());
-  partners.period = period;
-  unite_matches(surface, period, classes);
-  take_classes(classes, partners);
-  return partners;
-}
 
 PeriodicPartners periodic_partners(const Mesh& mesh, const Surface& surface,
                                    const std::optional<Vec3>& period) {

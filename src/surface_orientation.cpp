@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <optional>
 
 #include <fmt/format.h>
 
 #include "roughmesh/error.hpp"
 
+#include "disjoint_sets.hpp"
 #include "messages.hpp"
 #include "polygon.hpp"
 #include "volume_faces.hpp"
@@ -243,21 +243,13 @@ void look_outward(const Mesh& mesh, const WeldedPoints& welded, const Faces& fac
 
 // Patches that touch along edges of three and more faces are one piece.
 Index count_pieces(const EdgeTable& edges, const Patches& patches) {
-  std::vector<Index> parent(static_cast<std::size_t>(patches.n));
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](Index patch) {
-    while (parent[patch] != patch) patch = parent[patch] = parent[parent[patch]];
-    return patch;
-  };
-  Index n_pieces = patches.n;
+  DisjointSets pieces(static_cast<std::size_t>(patches.n));
   for (Index e = 0; e < edges.size(); ++e)
-    for (const Side& side : edges.edge(e)) {
-      const Index a = root(patches.of_face[edges.edge(e).front().face]);
-      const Index b = root(patches.of_face[side.face]);
-      if (a == b) continue;
-      parent[b] = a;
-      --n_pieces;
-    }
+    for (const Side& side : edges.edge(e))
+      pieces.unite(patches.of_face[edges.edge(e).front().face], patches.of_face[side.face]);
+  Index n_pieces = 0;
+  for (Index patch = 0; patch < patches.n; ++patch)
+    if (pieces.smallest(patch) == patch) ++n_pieces;
   return n_pieces;
 }
 

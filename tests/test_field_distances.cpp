@@ -163,9 +163,10 @@ TEST(FieldByDistance, TableHasItsFitOrItsInterpolant) {
 
 // One sampler of the masters gives every point the height of its images.
 TEST(FieldByDistance, PartnersHaveOneHeight) {
-  const Surface surface = select_surface(test::plate(12));
+  const Mesh mesh = test::plate(12);
+  const Surface surface = select_surface(mesh);
   const Vec3 period(1, 1, 0);
-  const PeriodicPartners partners = matched_partners(surface, period);
+  const PeriodicPartners partners = periodic_partners(mesh, surface, period);
   const Correlation all(surface.points, Autocorrelation({.length = 0.2}),
                         Distance::periodic(period));
   const FieldSampler sampler(all.among(masters(partners)));

@@ -69,7 +69,7 @@ std::vector<double> affine(const Eigen::Matrix3d& linear, const Vec3& shift) {
 TEST(PeriodicPartners, OfLinksAreTheFirstOfTheirImages) {
   const Mesh mesh = linked_sheet();
   const Surface surface = select_surface(mesh);
-  const PeriodicPartners partners = linked_partners(mesh, surface);
+  const PeriodicPartners partners = periodic_partners(mesh, surface);
   EXPECT_EQ(partners.period, Vec3(2, 3, 0));
   for (Index i = 0; i < side; ++i)
     for (Index j = 0; j < side; ++j) {
@@ -83,8 +83,7 @@ TEST(PeriodicPartners, OfLinksAreTheFirstOfTheirImages) {
 TEST(PeriodicPartners, ByLinksAndByPositionAreTheSame) {
   const Mesh mesh = linked_sheet();
   const Surface surface = select_surface(mesh);
-  const PeriodicPartners linked = linked_partners(mesh, surface);
-  EXPECT_EQ(matched_partners(surface, Vec3(2, 3, 0)).master, linked.master);
+  const PeriodicPartners linked = periodic_partners(mesh, surface);
   EXPECT_EQ(periodic_partners(mesh, surface, Vec3(2, 3, 0)).master, linked.master);
   EXPECT_EQ(periodic_partners(sheet(), surface, Vec3(2, 3, 0)).master, linked.master);
   // One axis by link, the other by period.
@@ -98,9 +97,9 @@ TEST(PeriodicPartners, ByLinksAndByPositionAreTheSame) {
 TEST(PeriodicPartners, DoNotDependOnWhichSideALinkCallsMaster) {
   Mesh mesh = linked_sheet();
   const Surface surface = select_surface(mesh);
-  const PeriodicPartners expected = linked_partners(mesh, surface);
+  const PeriodicPartners expected = periodic_partners(mesh, surface);
   for (auto& [slave, master] : mesh.periodic_links[0].nodes) std::swap(slave, master);
-  const PeriodicPartners turned = linked_partners(mesh, surface);
+  const PeriodicPartners turned = periodic_partners(mesh, surface);
   EXPECT_EQ(turned.master, expected.master);
   EXPECT_EQ(turned.period, expected.period);
 }
@@ -109,7 +108,7 @@ TEST(PeriodicPartners, DoNotDependOnWhichSideALinkCallsMaster) {
 TEST(PeriodicPartners, MayBeLinkedAcrossACorner) {
   Mesh mesh = linked_sheet();
   mesh.periodic_links.push_back({0, 9, 8, {}, {{side * side - 1, 0}}});
-  const PeriodicPartners partners = linked_partners(mesh, select_surface(mesh));
+  const PeriodicPartners partners = periodic_partners(mesh, select_surface(mesh));
   EXPECT_EQ(partners.period, Vec3(2, 3, 0));
   EXPECT_EQ(std::count(partners.rotated.begin(), partners.rotated.end(), 1), 0);
 }
@@ -120,17 +119,17 @@ TEST(PeriodicPartners, ArePairedToAPartInABillion) {
   for (Vec3& x : mesh.nodes) x += Vec3(-40, 17, 5);
   mesh.nodes[side * side - 1] += Vec3(2e-10, -2e-10, 2e-10);
   const Surface surface = select_surface(mesh);
-  EXPECT_EQ(masters(matched_partners(surface, Vec3(2, 3, 0))).size(),
+  EXPECT_EQ(masters(periodic_partners(mesh, surface, Vec3(2, 3, 0))).size(),
             static_cast<std::size_t>((side - 1) * (side - 1)));
   mesh.nodes[side * side - 1] += Vec3(0, 0, 1e-7);
-  EXPECT_EQ(masters(matched_partners(select_surface(mesh), Vec3(2, 3, 0))).size(),
+  EXPECT_EQ(masters(periodic_partners(mesh, select_surface(mesh), Vec3(2, 3, 0))).size(),
             static_cast<std::size_t>((side - 1) * (side - 1) + 1));
 }
 
 TEST(PeriodicPartners, WithoutLinksAreNone) {
   const Mesh mesh = sheet();
   const Surface surface = select_surface(mesh);
-  const PeriodicPartners partners = linked_partners(mesh, surface);
+  const PeriodicPartners partners = periodic_partners(mesh, surface);
   EXPECT_EQ(partners.period, Vec3(0, 0, 0));
   EXPECT_EQ(masters(partners).size(), surface.points.size());
 }
@@ -144,14 +143,14 @@ TEST(PeriodicPartners, LinksThatAreNotTranslationsAreMarked) {
                          Vec3(2, 0, 0));
   mesh.periodic_links = {turned};
   const Surface surface = select_surface(mesh);
-  const PeriodicPartners by_map = linked_partners(mesh, surface);
+  const PeriodicPartners by_map = periodic_partners(mesh, surface);
   EXPECT_EQ(by_map.period, Vec3(0, 0, 0));
   EXPECT_EQ(std::count(by_map.rotated.begin(), by_map.rotated.end(), 1), 2 * side);
   // By the nodes: the first side linked to the second, which runs the other way.
   PeriodicLink by_nodes{1, 1, 2, {}, {}};
   for (Index k = 0; k < side; ++k) by_nodes.nodes.emplace_back(k * side, k);
   mesh.periodic_links = {by_nodes};
-  const PeriodicPartners partners = linked_partners(mesh, surface);
+  const PeriodicPartners partners = periodic_partners(mesh, surface);
   EXPECT_EQ(partners.period, Vec3(0, 0, 0));
   EXPECT_EQ(std::count(partners.rotated.begin(), partners.rotated.end(), 1), 2 * side - 2);
   // Both rows stay masters of the same number of classes, and keep their own normals.
@@ -163,7 +162,7 @@ TEST(PeriodicPartners, LinksToNodesThatStayAreMarked) {
   mesh.nodes.emplace_back(2, 3, 9);
   test::number_nodes(mesh);
   mesh.periodic_links = {{1, 1, 2, {}, {{7, side * side}}}};
-  const PeriodicPartners partners = linked_partners(mesh, select_surface(mesh));
+  const PeriodicPartners partners = periodic_partners(mesh, select_surface(mesh));
   EXPECT_EQ(partners.unpaired[7], 1);
   EXPECT_EQ(std::count(partners.unpaired.begin(), partners.unpaired.end(), 1), 1);
 }
@@ -190,8 +189,8 @@ TEST(PeriodicPartners, RefuseSidesThatDifferAndPeriodsThatContradict) {
 }
 
 TEST(PeriodicPartners, HeightsOfMastersAreExpandedToImages) {
-  const Surface surface = select_surface(sheet());
-  const PeriodicPartners partners = matched_partners(surface, Vec3(2, 3, 0));
+  const Mesh mesh = sheet();
+  const PeriodicPartners partners = periodic_partners(mesh, select_surface(mesh), Vec3(2, 3, 0));
   std::vector<double> of_masters;
   for (const Index master : masters(partners)) of_masters.push_back(10.0 * master);
   const std::vector<double> heights = expand(partners, of_masters);
@@ -204,7 +203,7 @@ TEST(PeriodicPartners, HeightsOfMastersAreExpandedToImages) {
 TEST(PeriodicPartners, NormalsAreThoseOfTheUnboundedSurface) {
   const Mesh mesh = sheet();
   const Surface surface = select_surface(mesh);
-  const PeriodicPartners partners = matched_partners(surface, Vec3(2, 3, 0));
+  const PeriodicPartners partners = periodic_partners(mesh, surface, Vec3(2, 3, 0));
   const Surface shared = with_partner_normals(surface, partners);
 
   std::vector<Vec3> nodes;
@@ -230,8 +229,9 @@ TEST(PeriodicPartners, NormalsAreThoseOfTheUnboundedSurface) {
 
 // Every point of a plate of 400 x 400 modulo a period of one mesh size: one class of 160,801.
 TEST(PeriodicPartners, TakeNoQuadraticTimeForManyImages) {
-  const Surface surface = select_surface(test::plate(400));
-  const PeriodicPartners partners = matched_partners(surface, Vec3(1.0 / 400, 1.0 / 400, 0));
+  const Mesh mesh = test::plate(400);
+  const PeriodicPartners partners =
+      periodic_partners(mesh, select_surface(mesh), Vec3(1.0 / 400, 1.0 / 400, 0));
   EXPECT_EQ(masters(partners).size(), 1u);
 }
 

@@ -29,21 +29,13 @@ struct PeriodicPartners {
 /// master, chains followed to the end. A link whose nodes differ by one vector along a coordinate
 /// axis sets the period of that axis. Without a link to the surface no point is an image.
 ///
+/// Where a period is given, also partners by position: points equal to 1e-9 of the period, modulo
+/// that period and those of the links. Sorts: n log n.
+///
+/// @param period  for each axis, 0: not periodic along it, or as the links say
 /// @throws InputError  nodes that differ by 1e-9 of the period from where their link puts them; two
-///                     periods along one axis
-PeriodicPartners linked_partners(const Mesh& mesh, const Surface& surface);
-
-/// Partners by position: points equal to 1e-9 of the period, modulo the period. Sorts: n log n.
-///
-/// @param period  for each axis, 0: not periodic along it
-/// @throws InputError  a period that is negative or not finite, no period at all, one that no two
-///                     points differ by
-PeriodicPartners matched_partners(const Surface& surface, const Vec3& period);
-
-/// Both: linked partners, and where a period is given also those matched by it together with the
-/// periods of the links.
-///
-/// @throws InputError  as both; a period that is given and not that of the links, to 1e-9
+///                     periods along one axis; a period that is negative or not finite, 0 along all
+///                     axes, one that no two points differ by, or not that of the links
 PeriodicPartners periodic_partners(const Mesh& mesh, const Surface& surface,
                                    const std::optional<Vec3>& period = {});
 
