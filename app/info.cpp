@@ -95,6 +95,14 @@ void print_surface(const Surface& surface, const std::string& unit) {
                surface.n_nonmanifold_edges);
 }
 
+/// As a run would take it, with the period of the links of the mesh.
+void print_distance(const Roughness& request, const std::string& unit) {
+  fmt::print("  {:<34} {}", "distance", name(*request.distance));
+  if (!request.period.empty())
+    fmt::print(", period {:.6g} {}", fmt::join(request.period, ", "), unit);
+  fmt::print("\n");
+}
+
 std::string optional_length(const std::optional<double>& value) {
   return value ? fmt::format("{:.6g}", *value) : "none";
 }
@@ -129,11 +137,12 @@ void print_limits(const Resolution& r, const std::string& unit) {
   fmt::print("  {:<34} {:.4g} {}\n", "largest safe Rq by curvature", r.largest_safe_rq, unit);
 }
 
-/// Without a length asked for, the shortest the mesh carries.
-Roughness with_length(Roughness options, const Surface& surface) {
+/// Without a length asked for, the shortest the mesh carries; without heights, heights of 1.
+Roughness with_defaults(Roughness options, bool has_rms, const Surface& surface) {
   const bool has_length =
       !options.length.empty() || options.rolloff || options.acf == Family::table;
   if (!has_length) options.length = {sizes_per_length * surface.mesh_size.median};
+  if (!has_rms) options.rms = 1;
   return options;
 }
 
@@ -159,14 +168,16 @@ void run_info(const RoughenOptions& options, bool has_rms) {
     return;
   }
   print_surface(surface, unit);
-  const Correlation correlation = field_model(with_length(request, surface), surface);
-  const Resolution resolution = assess_resolution(surface, correlation);
-  print_lengths(correlation.autocorrelation(), unit);
+  const SurfaceModel model = surface_model(mesh, surface, with_defaults(request, has_rms, surface));
+  const Resolution resolution = assess_resolution(model.surface, model.correlation);
+  print_distance(model.request, unit);
+  print_lengths(model.correlation.autocorrelation(), unit);
   print_resolution(resolution, has_rms, request.rms, unit);
   print_limits(resolution, unit);
   const double rq = has_rms ? request.rms : 0.0;
   for (const std::string& warning : resolution_warnings(resolution, rq))
     fmt::print("warning: {}\n", warning);
+  if (!model.refusal.empty()) fmt::print("warning: {}\n", model.refusal);
 }
 
 }  // namespace roughmesh::app

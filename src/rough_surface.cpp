@@ -2,11 +2,12 @@
 #include "rough_surface.hpp"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 #include <fmt/format.h>
 
-#include "roughmesh/pipeline.hpp"
+#include "roughmesh/field_model.hpp"
 
 #include "messages.hpp"
 
@@ -191,7 +192,7 @@ void take_shared_normals(const Surface& whole, const PeriodicPartners& partners,
 }
 
 FieldPlan prepare_field(const Mesh& mesh, RoughSurfaces& rough,
-                        std::span<const std::size_t> members) {
+                        std::span<const std::size_t> members, TornLinks torn_links) {
   const std::size_t first = members.front();
   const Surface whole =
       members.size() == 1 ? rough.surfaces[first] : joined(mesh, rough.plans, members);
@@ -203,16 +204,19 @@ FieldPlan prepare_field(const Mesh& mesh, RoughSurfaces& rough,
   for (const std::size_t s : members) fill_in_distance(rough.plans[s].request, linked, images_move);
   const Roughness& request = rough.plans[first].request;
   if (!is_periodic(*request.distance)) {
-    refuse_broken_links(effects(rough, members, linked), linked, *request.distance);
+    if (torn_links == TornLinks::refused)
+      refuse_broken_links(effects(rough, members, linked), linked, *request.distance);
     return {field_model(request, whole), no_partners(whole)};
   }
   // By links and positions: a file need not list all of its links, and a report names the period.
   PeriodicPartners partners = partners_of(mesh, whole, request);
   for (const std::size_t s : members)
     take_shared_normals(whole, partners, rough.plans[s], rough.surfaces[s]);
-  const std::vector<ClassedEffect> classed = effects(rough, members, partners);
-  refuse_broken_links(classed, partners, *request.distance);
-  refuse_unequal_images(classed);
+  if (torn_links == TornLinks::refused) {
+    const std::vector<ClassedEffect> classed = effects(rough, members, partners);
+    refuse_broken_links(classed, partners, *request.distance);
+    refuse_unequal_images(classed);
+  }
   return {field_model(request, whole), std::move(partners)};
 }
 
@@ -235,8 +239,15 @@ RoughSurfaces prepare_surfaces(const Mesh& mesh, std::span<const Roughness> requ
   }
   for (const std::vector<std::size_t>& members : share_fields(requests)) {
     for (const std::size_t member : members) rough.plans[member].field = rough.fields.size();
-    rough.fields.push_back(prepare_field(mesh, rough, members));
+    rough.fields.push_back(prepare_field(mesh, rough, members, TornLinks::refused));
   }
+  return rough;
+}
+
+RoughSurfaces prepare_surface(const Mesh& mesh, const Surface& surface, const Roughness& request,
+                              TornLinks torn_links) {
+  RoughSurfaces rough{{surface}, {plan_surface(mesh, surface, request)}, {}};
+  rough.fields.push_back(prepare_field(mesh, rough, std::array<std::size_t, 1>{}, torn_links));
   return rough;
 }
 

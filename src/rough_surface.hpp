@@ -44,6 +44,13 @@ struct RoughSurfaces {
 ///                     that the distance of the surface does not respect
 RoughSurfaces prepare_surfaces(const Mesh& mesh, std::span<const Roughness> requests);
 
+/// What becomes of a field that would part nodes which periodic links join.
+enum class TornLinks { refused, allowed };
+
+/// Likewise for one surface that is selected already.
+RoughSurfaces prepare_surface(const Mesh& mesh, const Surface& surface, const Roughness& request,
+                              TornLinks torn_links);
+
 /// Correlation between the points of one surface.
 Correlation correlation_of(const SurfacePlan& surface, std::span<const FieldPlan> fields);
 

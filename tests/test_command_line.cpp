@@ -400,6 +400,22 @@ TEST_F(CommandLine, InfoStatesSizesOfTheFirstFiftyGroupsAndElementsOfAll) {
   EXPECT_NE(out.find("first 50 groups only"), std::string::npos);
 }
 
+TEST_F(CommandLine, InfoTakesThePeriodOfTheLinks) {
+  write_mesh(linked_box(), folder / "box.msh");
+  for (const std::string options : {"", " --distance periodic", " --distance minimum-image"}) {
+    const Outcome outcome = run("info box.msh --group top" + options);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find(", period 1, 1, 0 mesh units"), std::string::npos) << outcome.out;
+    EXPECT_EQ(outcome.out.find("a periodic link joins"), std::string::npos);
+  }
+  const Outcome torn = run("info box.msh --group top --distance euclidean");
+  EXPECT_EQ(torn.exit_code, 0) << torn.err;
+  EXPECT_NE(torn.out.find("warning: a periodic link joins"), std::string::npos) << torn.out;
+  const Outcome none = run("info ball.msh --group surface --distance periodic");
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_NE(none.err.find("needs --period"), std::string::npos) << none.err;
+}
+
 TEST_F(CommandLine, InfoStatesGroupsAndResolution) {
   const Outcome outcome = run("info ball.msh --group surface --length 0.3 --rms 0.01");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "roughmesh/check.hpp"
+#include "roughmesh/field_model.hpp"
 #include "roughmesh/mesh_io.hpp"
 #include "roughmesh/options.hpp"
 #include "roughmesh/report.hpp"
@@ -40,10 +41,5 @@ Report roughen(const Mesh& mesh, const RoughenOptions& options, const Deliver& d
 
 /// Heights, normals and displacements as point data, for files that carry them.
 std::vector<PointField> point_fields(const RoughMesh& rough);
-
-/// Correlation between the points of a surface, by the distance that the request asks for and the
-/// autocorrelation that goes with it: of anisotropic lengths, that of the first finite one.
-/// @throws InputError  periodic and minimum-image without a period
-Correlation field_model(const Roughness& request, const Surface& surface);
 
 }  // namespace roughmesh
