@@ -6,7 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 
+#include "morton.hpp"
 #include "parallel.hpp"
 
 namespace roughmesh::detail {
@@ -18,6 +20,9 @@ constexpr std::size_t n_near_pairs = 200;
 constexpr std::size_t n_strata = 50;
 constexpr std::size_t n_sources = (max_pairs - n_near_pairs) / n_strata;
 
+constexpr std::size_t most_searched_points = 20'000;
+constexpr std::size_t n_neighbourhoods = 40;
+
 using Strata = std::array<double, n_strata>;  ///< lower ends, ascending
 
 std::vector<PointPair> all_pairs(std::size_t n) {
@@ -26,47 +31,6 @@ std::vector<PointPair> all_pairs(std::size_t n) {
     for (std::size_t j = i + 1; j < n; ++j)
       pairs.emplace_back(static_cast<Index>(i), static_cast<Index>(j));
   return pairs;
-}
-
-/// Takes the low 21 bits of a number three places apart.
-std::uint64_t spread_bits(std::uint64_t x) {
-  x &= 0x1fffff;
-  x = (x | x << 32) & 0x001f00000000ffff;
-  x = (x | x << 16) & 0x001f0000ff0000ff;
-  x = (x | x << 8) & 0x100f00f00f00f00f;
-  x = (x | x << 4) & 0x10c30c30c30c30c3;
-  return (x | x << 2) & 0x1249249249249249;
-}
-
-/// Points along Morton's curve through their box, shifted diagonally by a part of its size.
-std::vector<Index> curve_through(const std::vector<Vec3>& points, double shift) {
-  Eigen::AlignedBox3d box;
-  for (const Vec3& x : points) box.extend(x);
-  const double size = std::max(box.sizes().maxCoeff(), std::numeric_limits<double>::min());
-  std::vector<std::uint64_t> code(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i)
-    for (int axis = 0; axis < 3; ++axis) {
-      const double place = ((points[i] - box.min())[axis] / size + shift) / 2;  // in [0, 1)
-      code[i] |= spread_bits(static_cast<std::uint64_t>(place * 0x1p21)) << axis;
-    }
-  std::vector<Index> curve(points.size());
-  std::iota(curve.begin(), curve.end(), Index{0});
-  std::sort(curve.begin(), curve.end(),
-            [&](Index i, Index j) { return code[i] != code[j] ? code[i] < code[j] : i < j; });
-  return curve;
-}
-
-/// Places whose Euclidean distance is small where theirs is. Pieces of a curve, one step apart in
-/// y, are moved as far apart as they are long.
-std::vector<Vec3> comparable_places(std::span<const Vec3> points, const Distance& distance) {
-  double step = 1;
-  if (distance.kind() == DistanceKind::curve) {
-    step = 0;
-    for (const Vec3& x : points) step = std::max(step, x.x());
-  }
-  std::vector<Vec3> places(points.begin(), points.end());
-  for (Vec3& x : places) x = distance.stretch() * Vec3(x.x(), step * x.y(), x.z());
-  return places;
 }
 
 struct NearPairs {
@@ -80,10 +44,11 @@ struct NearPairs {
 /// one curve at most, and two curves are left on which the closest pair stays together.
 NearPairs near_pairs(std::span<const Vec3> points, const Distance& distance) {
   constexpr int n_curves = 5;
-  const std::vector<Vec3> stretched = comparable_places(points, distance);
+  const std::vector<Vec3> places = comparable_places(points, distance);
   std::vector<std::pair<double, PointPair>> steps;
   for (int c = 0; c < n_curves; ++c) {
-    const std::vector<Index> curve = curve_through(stretched, static_cast<double>(c) / n_curves);
+    const std::vector<Index> curve =
+        morton_order(morton_codes(places, static_cast<double>(c) / n_curves));
     for (std::size_t k = 1; k < curve.size(); ++k)
       steps.emplace_back(distance(points[curve[k - 1]], points[curve[k]]),
                          std::minmax(curve[k - 1], curve[k]));
@@ -135,16 +100,43 @@ std::vector<PointPair> pairs_of_source(std::span<const Vec3> points, const Dista
   return pairs;
 }
 
+/// Position along the curve of the shortest step to another place.
+std::size_t shortest_step(std::span<const Vec3> places, const Distance& distance,
+                          std::span<const Index> curve) {
+  constexpr std::size_t grain = 1 << 14;
+  using Step = std::pair<double, std::size_t>;  // length and position
+  const Step none{std::numeric_limits<double>::infinity(), 0};
+  std::vector<Step> shortest((curve.size() + grain - 1) / grain, none);
+  parallel_for(curve.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = std::max<std::size_t>(begin, 1); k < end; ++k) {
+      const double r = distance(places[curve[k - 1]], places[curve[k]]);
+      if (r > 0) shortest[begin / grain] = std::min(shortest[begin / grain], {r, k});
+    }
+  });
+  return std::accumulate(shortest.begin(), shortest.end(), none,
+                         [](const Step& a, const Step& b) { return std::min(a, b); })
+      .second;
+}
+
+/// Points on both sides of one along the curve: the next ones all, then fewer and fewer, so that
+/// there are distances of every size.
+void mark_neighbourhood(std::span<const Index> curve, std::size_t centre,
+                        std::vector<std::uint8_t>& marks) {
+  constexpr std::size_t n_next = 125;
+  constexpr double ratio = 1.07;
+  for (std::size_t step = 0; step < curve.size();) {
+    if (step <= centre) marks[curve[centre - step]] = 1;
+    if (centre + step < curve.size()) marks[curve[centre + step]] = 1;
+    step = step < n_next ? step + 1 : static_cast<std::size_t>(ratio * static_cast<double>(step));
+  }
+}
+
 double error_of(double covariance, double rho) {
   const double error = std::abs(covariance - rho);
   return std::isnan(error) ? std::numeric_limits<double>::infinity() : error;
 }
 
-}  // namespace
-
-std::vector<PointPair> audited_pairs(const Correlation& correlation) {
-  const std::span<const Vec3> points = correlation.places();
-  const Distance& distance = correlation.distance();
+std::vector<PointPair> pairs_among(std::span<const Vec3> points, const Distance& distance) {
   const std::size_t n = points.size();
   if (n < 2 || n * (n - 1) / 2 <= max_pairs) return all_pairs(n);
   NearPairs near = near_pairs(points, distance);
@@ -160,7 +152,40 @@ std::vector<PointPair> audited_pairs(const Correlation& correlation) {
   return pairs;
 }
 
-Audit audit_covariance(const FieldMethod& method, const Correlation& correlation) {
+}  // namespace
+
+std::vector<Index> audited_points(std::span<const Vec3> places, const Distance& distance) {
+  const std::size_t n = places.size();
+  const bool takes_all = n <= most_searched_points;
+  std::vector<std::uint8_t> marks(n, takes_all ? 1 : 0);
+  if (!takes_all) {
+    const std::vector<Index> curve = morton_order(places, distance);
+    for (std::size_t k = 1; k < n_neighbourhoods; ++k)
+      mark_neighbourhood(curve, k * n / n_neighbourhoods, marks);
+    mark_neighbourhood(curve, shortest_step(places, distance, curve), marks);
+  }
+  std::vector<Index> points;
+  for (std::size_t i = 0; i < n; ++i)
+    if (marks[i]) points.push_back(static_cast<Index>(i));
+  return points;
+}
+
+std::vector<PointPair> audited_pairs(const Correlation& correlation) {
+  const std::span<const Vec3> places = correlation.places();
+  const std::vector<Index> points = audited_points(places, correlation.distance());
+  std::vector<Vec3> audited;
+  audited.reserve(points.size());
+  for (const Index i : points) audited.push_back(places[i]);
+  std::vector<PointPair> pairs = pairs_among(audited, correlation.distance());
+  for (auto& [i, j] : pairs) {
+    i = points[i];
+    j = points[j];
+  }
+  return pairs;
+}
+
+Audit audit_covariance(const FieldMethod& method) {
+  const Correlation& correlation = method.correlation();
   std::vector<PointPair> pairs = audited_pairs(correlation);
   const auto n = static_cast<std::size_t>(correlation.n_points());
   const std::size_t n_pairs = pairs.size();

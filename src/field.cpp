@@ -43,7 +43,6 @@ std::string_view name(Factorization factorization) {
 }
 
 struct FieldSampler::Plan {
-  Correlation correlation;
   detail::PreparedField field;
 };
 
@@ -64,7 +63,8 @@ void check_input(const Correlation& correlation, const FieldOptions& options) {
 /// request come from one method on every mesh.
 Method chosen(const Correlation& correlation, const FieldOptions& options) {
   if (options.method != Method::automatic) return options.method;
-  return detail::lattice_obstacle(correlation).empty() ? Method::lattice : Method::cholesky;
+  return detail::lattice_obstacle(correlation, options).empty() ? Method::lattice
+                                                                : Method::cholesky;
 }
 
 detail::PreparedField prepare(const Correlation& correlation, const FieldOptions& options) {
@@ -84,7 +84,7 @@ FieldSampler::FieldSampler(const Correlation& correlation, const FieldOptions& o
   check_input(correlation, options);
   detail::PreparedField field = prepare(correlation, options);
   field.summary.minimum_image_difference = correlation.minimum_image_difference();
-  plan_.reset(new Plan{correlation, std::move(field)});
+  plan_.reset(new Plan{std::move(field)});
 }
 
 FieldSampler::~FieldSampler() = default;
@@ -97,7 +97,8 @@ std::vector<double> FieldSampler::heights(std::uint64_t seed, std::uint64_t real
 
 namespace {
 
-void require_pair(Index i, Index j, Index n) {
+void require_pair(Index i, Index j, const detail::PreparedField& field) {
+  const Index n = field.method->correlation().n_points();
   if (std::min(i, j) < 0 || std::max(i, j) >= n)
     throw InputError(
         fmt::format("covariance of points {} and {}: there are points 0 to {}", i, j, n - 1));
@@ -106,19 +107,17 @@ void require_pair(Index i, Index j, Index n) {
 }  // namespace
 
 double FieldSampler::covariance(Index i, Index j) const {
-  require_pair(i, j, plan_->correlation.n_points());
+  require_pair(i, j, plan_->field);
   const detail::PointPair pair{i, j};
   return plan_->field.method->covariances({&pair, 1}).front();
 }
 
 double FieldSampler::target(Index i, Index j) const {
-  require_pair(i, j, plan_->correlation.n_points());
+  require_pair(i, j, plan_->field);
   return plan_->field.method->target(i, j);
 }
 
-Audit FieldSampler::audit() const {
-  return detail::audit_covariance(*plan_->field.method, plan_->correlation);
-}
+Audit FieldSampler::audit() const { return detail::audit_covariance(*plan_->field.method); }
 
 const FieldSummary& FieldSampler::summary() const { return plan_->field.summary; }
 

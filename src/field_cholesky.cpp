@@ -168,7 +168,7 @@ CholeskyField prepare(const AutocorrelationMatrix& matrix) {
 class CholeskyMethod final : public FieldMethod {
  public:
   CholeskyMethod(Correlation correlation, Factor factor)
-      : correlation_(std::move(correlation)), factor_(std::move(factor)) {}
+      : FieldMethod(std::move(correlation)), factor_(std::move(factor)) {}
 
   std::vector<double> heights(const NoiseStream& stream) const override {
     return factor_.heights(stream);
@@ -176,10 +176,8 @@ class CholeskyMethod final : public FieldMethod {
   std::vector<double> covariances(std::span<const PointPair> pairs) const override {
     return factor_.covariances(pairs);
   }
-  double target(Index i, Index j) const override { return correlation_(i, j); }
 
  private:
-  Correlation correlation_;
   Factor factor_;
 };
 

@@ -9,11 +9,11 @@
 
 namespace roughmesh::detail {
 
-/// Why this correlation is no mixture of Gaussians in space, with the way out; empty if it is one.
-std::string lattice_obstacle(const Correlation& correlation);
+/// Why the method cannot sample this correlation, with the way out; empty if it can.
+std::string lattice_obstacle(const Correlation& correlation, const FieldOptions& options);
 
-/// @throws InputError  a correlation with an obstacle; places too far from the origin to be told
-///                     apart at this tolerance; too little free memory
+/// @throws InputError  a correlation with an obstacle; a cutoff that leaves nothing; places too far
+///                     from the origin to be told apart at this tolerance; too little free memory
 PreparedField prepare_lattice(const Correlation& correlation, const FieldOptions& options);
 
 }  // namespace roughmesh::detail

@@ -18,7 +18,7 @@ using PointPair = std::pair<Index, Index>;
 /// A prepared linear map from white noise to the heights of n points.
 class FieldMethod {
  public:
-  FieldMethod() = default;
+  explicit FieldMethod(Correlation correlation) : correlation_(std::move(correlation)) {}
   virtual ~FieldMethod() = default;
   FieldMethod(const FieldMethod&) = delete;
   FieldMethod& operator=(const FieldMethod&) = delete;
@@ -30,7 +30,12 @@ class FieldMethod {
   virtual std::vector<double> covariances(std::span<const PointPair> pairs) const = 0;
 
   /// What covariances() should be.
-  virtual double target(Index i, Index j) const = 0;
+  virtual double target(Index i, Index j) const { return correlation_(i, j); }
+
+  const Correlation& correlation() const { return correlation_; }
+
+ private:
+  Correlation correlation_;
 };
 
 struct PreparedField {

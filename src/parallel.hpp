@@ -6,6 +6,11 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
+#include <utility>
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_sort.h>
 
 namespace roughmesh::detail {
 
@@ -14,6 +19,23 @@ namespace roughmesh::detail {
 /// on any of them.
 void parallel_for(std::size_t n, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
+
+/// A value for each thread, made when a thread first asks for its own.
+template <class T>
+class PerThread {
+ public:
+  T& local() { return values_.local(); }
+
+ private:
+  tbb::enumerable_thread_specific<T> values_;
+};
+
+/// Sorts on several threads. `less` has to tell any two elements apart: then the result is the same
+/// on any number of them.
+template <class T, class Less>
+void parallel_sort(std::span<T> values, Less&& less) {
+  tbb::parallel_sort(values.begin(), values.end(), std::forward<Less>(less));
+}
 
 /// Threads of parallel_for and of the linear algebra library while it lives; 0 means one per core.
 class ThreadLimit {

@@ -95,6 +95,64 @@ TEST(AuditedPairs, AreFewForManyPointsToo) {
   EXPECT_LE(audited_pairs(Correlation(points, exponential, Distance::euclidean())).size(), 10'000u);
 }
 
+std::vector<Vec3> sphere_of_many_points() {
+  constexpr std::size_t n = 100'000;
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double z = 1 - (2 * static_cast<double>(i) + 1) / n, r = std::sqrt(1 - z * z);
+    const double angle = std::numbers::pi * (3 - std::sqrt(5.0)) * static_cast<double>(i);
+    points.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
+  }
+  return test::sorted(points);
+}
+
+TEST(AuditedPoints, AreAllOfFewAndSomeOfMany) {
+  const Distance distance = Distance::euclidean();
+  const std::vector<Vec3> points = sphere_of_many_points();
+  EXPECT_EQ(audited_points(std::span(points).first(20'000), distance).size(), 20'000u);
+  const std::vector<Index> some = audited_points(points, distance);
+  EXPECT_LE(some.size(), 20'000u);
+  EXPECT_GT(some.size(), 10'000u);
+  EXPECT_TRUE(std::is_sorted(some.begin(), some.end()));
+  EXPECT_EQ(std::adjacent_find(some.begin(), some.end()), some.end());
+}
+
+// As above, although pairs are sought among a fifth of the points: some of each octave from 1.1 of
+// the mesh size, about the shortest distance, to the diameter, and from all parts of the sphere.
+TEST(AuditedPairs, OfManyPointsCoverEveryDistanceAndPlace) {
+  const std::vector<Vec3> points = sphere_of_many_points();
+  const auto pairs = audited_pairs(Correlation(points, exponential, Distance::euclidean()));
+  EXPECT_GT(pairs.size(), 3000u);
+  EXPECT_LE(pairs.size(), 10'000u);
+  const std::vector<double> r = distances(pairs, points, Distance::euclidean());
+  const double mesh_size = test::mesh_size_of_sphere(points.size(), 1);
+  EXPECT_LT(*std::min_element(r.begin(), r.end()), 1.1 * mesh_size);
+  EXPECT_GT(*std::max_element(r.begin(), r.end()), 1.95);
+  for (double low = mesh_size; low < 2; low *= 2)
+    EXPECT_GT(std::count_if(r.begin(), r.end(), [&](double x) { return x >= low && x < 2 * low; }),
+              100)
+        << low;
+  for (int octant = 0; octant < 8; ++octant) {
+    const Vec3 sign(octant & 1 ? 1 : -1, octant & 2 ? 1 : -1, octant & 4 ? 1 : -1);
+    EXPECT_GT(std::count_if(pairs.begin(), pairs.end(),
+                            [&](const PointPair& pair) {
+                              return (points[pair.first].array() * sign.array() > 0).all();
+                            }),
+              100)
+        << octant;
+  }
+}
+
+TEST(AuditedPairs, OfManyPointsHoldTheClosest) {
+  for (const std::size_t near : {0, 40'000, 99'999}) {
+    std::vector<Vec3> points = sphere_of_many_points();
+    points.push_back(points[near] + Vec3(3e-6, 1e-6, 2e-6));
+    const auto pairs = audited_pairs(Correlation(points, exponential, Distance::euclidean()));
+    const std::vector<double> r = distances(pairs, points, Distance::euclidean());
+    EXPECT_LT(*std::min_element(r.begin(), r.end()), 1e-5) << near;
+  }
+}
+
 // Streaks: two of three lengths infinite, so that most points are at distance 0 of some other.
 TEST(AuditedPairs, BearPointsAtDistanceZero) {
   const double inf = std::numeric_limits<double>::infinity();
@@ -111,8 +169,8 @@ class FactorMethod final : public FieldMethod {
  public:
   FactorMethod(Factor factor, std::vector<Vec3> points,
                const Autocorrelation& autocorrelation = exponential)
-      : factor_(std::move(factor)),
-        correlation_(std::move(points), autocorrelation, Distance::euclidean()) {}
+      : FieldMethod(Correlation(std::move(points), autocorrelation, Distance::euclidean())),
+        factor_(std::move(factor)) {}
 
   std::vector<double> heights(const NoiseStream& stream) const override {
     return factor_.heights(stream);
@@ -120,12 +178,10 @@ class FactorMethod final : public FieldMethod {
   std::vector<double> covariances(std::span<const PointPair> pairs) const override {
     return factor_.covariances(pairs);
   }
-  double target(Index i, Index j) const override { return correlation_(i, j); }
-  Audit audit() const { return audit_covariance(*this, correlation_); }
+  Audit audit() const { return audit_covariance(*this); }
 
  private:
   Factor factor_;
-  Correlation correlation_;
 };
 
 // Uncorrelated heights, where an exponential was asked for: the error is rho at the shortest

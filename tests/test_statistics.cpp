@@ -235,6 +235,56 @@ TEST(Statistics, SampledSumsAgreeOnAGradedPlate) {
               0.05 * exact.standard_deviation);
 }
 
+// m and v by all pairs (docs/math.md, eq. 19), for the mean and the spread of Sq.
+ExpectedSq by_all_pairs(const Surface& surface, const Correlation& correlation) {
+  double mean = 0, squares = 0, square_of_means = 0;
+  for (Index i = 0; i < surface.n_points(); ++i) {
+    double row = 0, row_of_squares = 0;
+    for (Index j = 0; j < surface.n_points(); ++j) {
+      const double lost = 1 - correlation(i, j);
+      row += surface.areas[j] / surface.area * lost;
+      row_of_squares += surface.areas[j] / surface.area * lost * lost;
+    }
+    mean += surface.areas[i] / surface.area * row;
+    squares += surface.areas[i] / surface.area * row_of_squares;
+    square_of_means += surface.areas[i] / surface.area * row * row;
+  }
+  const double half = mean * mean / (2 * (squares - 2 * square_of_means + mean * mean));
+  const double ratio = std::exp(std::lgamma(half + 0.5) - std::lgamma(half)) / std::sqrt(half);
+  return {std::sqrt(mean) * ratio, std::sqrt(mean * (1 - ratio * ratio))};
+}
+
+void expect_all_pairs(const Surface& surface, const AutocorrelationOptions& family,
+                      const Distance& distance) {
+  const Correlation correlation(surface.points, Autocorrelation(family), distance);
+  const ExpectedSq exact = by_all_pairs(surface, correlation);
+  const ExpectedSq sampled = expected_sq(surface, correlation);
+  const double tolerance = 0.01 * exact.standard_deviation;
+  EXPECT_NEAR(sampled.mean, exact.mean, tolerance);
+  EXPECT_NEAR(sampled.standard_deviation, exact.standard_deviation, tolerance);
+}
+
+// 256 sources, and far points in groups, leave 1 % of the spread: for families with and without
+// heavy tails, lengths from the mesh size to the size of the surface, other distances, and a plate
+// of 64 x 64 nodes, on which strata of equal area are columns or squares.
+TEST(Statistics, SourcesAndGroupsOfFarPointsStandForAllPairs) {
+  for (const Surface& surface : {test::surface_of(test::plate(45)), graded_plate(45)})
+    for (const double length : {0.05, 1.0}) {
+      const Distance distance = Distance::euclidean();
+      expect_all_pairs(surface, {.length = length}, distance);
+      expect_all_pairs(surface, {.family = Family::exponential, .length = length}, distance);
+      expect_all_pairs(surface, {.family = Family::stretched, .length = length, .power = 0.5},
+                       distance);
+      expect_all_pairs(surface,
+                       {.family = Family::rational_quadratic, .length = length, .alpha = 0.6},
+                       distance);
+    }
+  const Surface surface = graded_plate(45);
+  expect_all_pairs(surface, {.length = 0.1}, Distance::stretched({.lengths = {0.1, 0.03, 0.2}}));
+  expect_all_pairs(surface, {.length = 0.1}, Distance::periodic({1, 1, 0}));
+  expect_all_pairs(test::surface_of(test::plate(63)), {.length = 0.05}, Distance::euclidean());
+}
+
 TEST(Statistics, LawOfSqIsTheSameOnAnyNumberOfThreads) {
   const Surface surface = test::surface_of(test::icosphere(4));
   const Autocorrelation acf({.length = 0.3});

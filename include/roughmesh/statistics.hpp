@@ -42,8 +42,8 @@ struct SqOptions {
 };
 
 /// From rho alone (docs/math.md, eq. 19, 20 and 44): below 1 because Sq is taken about the mean of
-/// a finite surface. Exact sums up to 2,000 points, beyond that over 256 area-weighted source
-/// points: linear time.
+/// a finite surface. Exact sums up to 2,000 points; beyond that over 256 area-weighted source
+/// points, groups of far points counting as one: in the time that sorting the points takes.
 /// @throws InputError  weights or areas out of range, or other numbers of them; a correlation that
 ///                     is not one of the points of this surface
 ExpectedSq expected_sq(const Surface& surface, const Correlation& correlation,
