@@ -2,6 +2,7 @@
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(TBB REQUIRED)
 find_package(fmt REQUIRED)
+find_package(hwy REQUIRED CONFIG)
 find_package(nlohmann_json REQUIRED)
 find_path(TOMLPLUSPLUS_INCLUDE_DIR toml++/toml.h REQUIRED)
 find_path(RANDOM123_INCLUDE_DIR Random123/philox.h REQUIRED)
@@ -18,8 +19,8 @@ add_library(roughmesh_private_dependencies INTERFACE)
 target_include_directories(roughmesh_private_dependencies SYSTEM INTERFACE
   ${RANDOM123_INCLUDE_DIR} ${XXHASH_INCLUDE_DIR} ${TOMLPLUSPLUS_INCLUDE_DIR} ${LAPACKE_INCLUDE_DIR} ${OPENBLAS_INCLUDE_DIR} ${MUPARSER_INCLUDE_DIR})
 target_link_libraries(roughmesh_private_dependencies INTERFACE
-  TBB::tbb fmt::fmt nlohmann_json::nlohmann_json ${LAPACKE_LIBRARY} ${OPENBLAS_LIBRARY} ${MUPARSER_LIBRARY})
+  TBB::tbb fmt::fmt hwy::hwy nlohmann_json::nlohmann_json ${LAPACKE_LIBRARY} ${OPENBLAS_LIBRARY} ${MUPARSER_LIBRARY})
 
 # What a program that uses the installed static library has to link; cmake/roughmesh-config.cmake.in
 # finds them where that program is built.
-set(roughmesh_installed_dependencies TBB::tbb fmt::fmt roughmesh::lapacke roughmesh::openblas roughmesh::muparser)
+set(roughmesh_installed_dependencies TBB::tbb fmt::fmt hwy::hwy roughmesh::lapacke roughmesh::openblas roughmesh::muparser)
