@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "nnls.hpp"
+#include "convex_fit.hpp"
 
 namespace roughmesh::detail {
 namespace {
@@ -39,22 +39,22 @@ double mixture_rho(std::span<const GaussianTerm> terms, double r) {
 
 GaussianMixture fit_gaussian_mixture(std::span<const CorrelationPair> samples,
                                      const MixtureFitOptions& options) {
-  // With sum x = 1, A x - rho = (A - rho 1^T) x. The smallest |(A - rho 1^T) x|^2 + (sum x - 1)^2
-  // is taken where x / sum x is the best of all vectors of sum 1: for each direction the factor
-  // that is best leaves a monotone function of the first norm.
   const std::vector<double> scales = ladder(options);
   const auto m = static_cast<Eigen::Index>(samples.size());
   const auto n = static_cast<Eigen::Index>(scales.size());
-  Eigen::MatrixXd a(m + 1, n);
-  for (Eigen::Index i = 0; i < m; ++i)
-    for (Eigen::Index k = 0; k < n; ++k)
-      a(i, k) = gaussian(samples[i].r, scales[k]) - samples[i].rho;
-  a.row(m).setOnes();
-  const Eigen::VectorXd weights = nonnegative_least_squares(a, Eigen::VectorXd::Unit(m + 1, m));
+  Eigen::MatrixXd columns(m, n);
+  Eigen::VectorXd target(m);
+  for (Eigen::Index i = 0; i < m; ++i) {
+    target[i] = samples[i].rho;
+    for (Eigen::Index k = 0; k < n; ++k) columns(i, k) = gaussian(samples[i].r, scales[k]);
+  }
+  ConvexFit fit(columns, target);
+  fit.solve();
+  const Eigen::VectorXd weights = fit.weights();
 
   GaussianMixture result;
   for (Eigen::Index k = 0; k < n; ++k)
-    if (weights[k] > 0) result.terms.push_back({weights[k] / weights.sum(), scales[k]});
+    if (weights[k] > 0) result.terms.push_back({weights[k], scales[k]});
   for (const CorrelationPair& sample : samples)
     result.residual =
         std::max(result.residual, std::abs(mixture_rho(result.terms, sample.r) - sample.rho));

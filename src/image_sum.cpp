@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <span>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "periodic_bell.hpp"
 #include "scale_quadrature.hpp"
 
 namespace roughmesh::detail {
@@ -17,25 +17,6 @@ namespace {
 
 constexpr double negligible = 1e-18;
 constexpr std::size_t most_cells = 20'000;
-
-double bell(double x, double scale) { return std::exp(-x * x / (2 * scale * scale)); }
-
-// Sum of bell(x + n period) over all whole n: few terms of it, or of its Fourier series (the theta
-// function; https://dlmf.nist.gov/20.7.E32).
-double periodic_bell(double x, double period, double scale) {
-  const double ratio = scale / period;
-  if (ratio < 0.4) {
-    double sum = bell(x, scale);
-    for (int n = 1; n <= 5; ++n) sum += bell(x + n * period, scale) + bell(x - n * period, scale);
-    return sum;
-  }
-  double sum = 1;
-  for (int m = 1; m <= 5; ++m) {
-    const double q = 2 * std::numbers::pi * m;
-    sum += 2 * std::exp(-q * q * ratio * ratio / 2) * std::cos(q * x / period);
-  }
-  return sum * std::sqrt(2 * std::numbers::pi) * ratio;
-}
 
 double near_bell(double x, double period, double scale) {
   return bell(x, scale) + bell(x + period, scale) + bell(x - period, scale);
@@ -95,6 +76,11 @@ void require_narrow(const Autocorrelation& autocorrelation, double log_cell, int
 
 }  // namespace
 
+void require_image_sum(const Autocorrelation& autocorrelation, int n_sums) {
+  require_fit(autocorrelation);
+  require_convergence(autocorrelation, n_sums);
+}
+
 ImageSum::ImageSum(const Autocorrelation& autocorrelation, const Distance& distance,
                    const Vec3& extent)
     : autocorrelation_(autocorrelation) {
@@ -108,8 +94,7 @@ ImageSum::ImageSum(const Autocorrelation& autocorrelation, const Distance& dista
     shortest = std::min(shortest, axis.period);
     log_cell += std::log(axis.period);
   }
-  require_fit(autocorrelation);
-  require_convergence(autocorrelation, n_sums);
+  require_image_sum(autocorrelation, n_sums);
   require_narrow(autocorrelation, log_cell, n_sums);
   negligible_distance_ = distance_of_negligible_rho(autocorrelation);
   if (n_sums > 0 && negligible_distance_ > 1.5 * shortest) {

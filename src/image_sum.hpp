@@ -13,6 +13,9 @@
 
 namespace roughmesh::detail {
 
+/// @throws InputError  the sum over images along n_sums axes diverges, or is not positive definite
+void require_image_sum(const Autocorrelation& autocorrelation, int n_sums);
+
 /// rho_P(x) of docs/math.md, eq. 25, to 1e-12, in some tenths of a microsecond. The images of the
 /// nearest cells (up to 27) are added one by one. What the others add has no singularity near, and
 /// is tabulated: polynomials of degree 11 on panels, along each axis along which it varies.

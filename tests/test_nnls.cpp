@@ -87,5 +87,26 @@ TEST(NonnegativeLeastSquares, BearsEqualAndZeroColumns) {
   EXPECT_EQ(nonnegative_least_squares(a, -a.rowwise().sum()).size(), 6);
 }
 
+// Leaving a column out, from whatever solution was found before, is the problem without it.
+TEST(NonnegativeLeastSquares, GoesOnWithoutAColumn) {
+  const int n = 15;
+  const MatrixXd a = random_matrix(30, n, 6);
+  const VectorXd b = a.cwiseAbs().rowwise().sum() + random_matrix(30, 1, 7);
+  NonnegativeLeastSquares all(a, b);
+  all.solve();
+  for (int column = 0; column < n; ++column) {
+    NonnegativeLeastSquares problem = all;
+    problem.leave_out(column);
+    problem.leave_out((column + 4) % n);
+    problem.solve();
+    MatrixXd rest = a;
+    rest.col(column).setZero();
+    rest.col((column + 4) % n).setZero();
+    EXPECT_EQ(problem.solution()[column], 0);
+    EXPECT_LT((problem.solution() - nonnegative_least_squares(rest, b)).norm(), 1e-12) << column;
+  }
+  EXPECT_LT((all.solution() - nonnegative_least_squares(a, b)).norm(), 1e-15);
+}
+
 }  // namespace
 }  // namespace roughmesh::detail
