@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The same heights of the method `lattice` on other meshes, threads and in any company.
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "roughmesh/field.hpp"
+
+#include "parallel.hpp"
+#include "support/lattice_cases.hpp"
+
+namespace roughmesh {
+namespace {
+
+using test::largest_difference;
+using test::lattice_sampler;
+
+const Autocorrelation gaussian({.family = Family::gaussian, .length = 0.4});
+const Autocorrelation exponential({.family = Family::exponential, .length = 0.4});
+
+std::vector<double> heights(const std::vector<Vec3>& places, const Autocorrelation& rho,
+                            const FieldOptions& options = {}) {
+  return lattice_sampler(places, rho, Distance::euclidean(), options).heights(2020, 3);
+}
+
+/// Every family with its options under which heights are a function of the place.
+struct SameField {
+  std::string name;
+  Autocorrelation rho;
+  FieldOptions options;
+};
+
+std::vector<SameField> same_fields() {
+  std::vector<SameField> fields = {{"gaussian", gaussian, {}}};
+  for (const auto& [name, autocorrelation] : test::all_autocorrelations(0.4))
+    fields.push_back({name + " under a cutoff", Autocorrelation(autocorrelation), {.cutoff = 0.1}});
+  return fields;
+}
+
+/// Heights of the places with these numbers.
+std::vector<double> picked(const std::vector<double>& all, const std::vector<Index>& numbers) {
+  std::vector<double> result;
+  for (const Index i : numbers) result.push_back(all[static_cast<std::size_t>(i)]);
+  return result;
+}
+
+// The nodes of a mesh come first in its refinement.
+TEST(SameLatticeField, OnARefinedMesh) {
+  const std::vector<Vec3> coarse = test::icosphere(2).nodes, fine = test::icosphere(4).nodes;
+  ASSERT_EQ(coarse[100], fine[100]);
+  for (const auto& [name, rho, options] : same_fields()) {
+    std::vector<double> d = heights(fine, rho, options);
+    d.resize(coarse.size());
+    EXPECT_LT(largest_difference(heights(coarse, rho, options), d), 1e-12) << name;
+  }
+}
+
+// Whatever other places there are: few, of another bounding box, far away, or close by.
+TEST(SameLatticeField, OnAnyPartOfAMesh) {
+  std::vector<Vec3> whole = test::icosphere(3).nodes;
+  whole.emplace_back(50, -60, 70);
+  whole.emplace_back(-1e4, 2, 3);
+  whole.emplace_back(whole[17] + Vec3(1e-7, 0, 0));
+  for (const auto& [name, rho, options] : same_fields()) {
+    const std::vector<double> d = heights(whole, rho, options);
+    const auto expect_same = [&](const std::vector<Index>& numbers) {
+      std::vector<Vec3> part;
+      for (const Index i : numbers) part.push_back(whole[static_cast<std::size_t>(i)]);
+      EXPECT_LT(largest_difference(heights(part, rho, options), picked(d, numbers)), 1e-12) << name;
+    };
+    expect_same({17});
+    expect_same({30, 31});
+    expect_same({5, 9, 17, 300, 640});
+    std::vector<Index> cap;  // of the sphere
+    for (Index i = 0; i < 642; ++i)
+      if (whole[static_cast<std::size_t>(i)].x() > 0.8) cap.push_back(i);
+    ASSERT_GT(cap.size(), 40U);
+    expect_same(cap);
+  }
+}
+
+TEST(SameLatticeField, WhateverTheOrderOfThePlaces) {
+  const std::vector<Vec3> places = test::icosphere(3).nodes;
+  std::vector<Index> order(places.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::shuffle(order.begin(), order.end(), std::mt19937(1));
+  std::vector<Vec3> shuffled;
+  for (const Index i : order) shuffled.push_back(places[static_cast<std::size_t>(i)]);
+  for (const auto& [name, autocorrelation] : test::all_autocorrelations(0.4)) {
+    const Autocorrelation rho(autocorrelation);
+    EXPECT_LT(largest_difference(heights(shuffled, rho), picked(heights(places, rho), order)),
+              1e-12)
+        << name;
+  }
+}
+
+TEST(SameLatticeField, IsSaidOfOneGaussianAndUnderACutoffOnly) {
+  const std::vector<Vec3> places = test::icosphere(2).nodes;
+  for (const auto& [name, autocorrelation] : test::all_autocorrelations(0.4)) {
+    const Autocorrelation rho(autocorrelation);
+    const auto is_same = [&](const FieldOptions& options) {
+      return lattice_sampler(places, rho, Distance::euclidean(), options)
+          .summary()
+          .lattice->same_on_other_meshes;
+    };
+    EXPECT_EQ(is_same({}), name == "gaussian") << name;
+    EXPECT_TRUE(is_same({.cutoff = 0.1})) << name;
+  }
+  const Autocorrelation square({.family = Family::stretched, .length = 0.4, .power = 2.0});
+  EXPECT_TRUE(lattice_sampler(places, square, Distance::euclidean())
+                  .summary()
+                  .lattice->same_on_other_meshes);
+}
+
+// An exponential has as much detail as a mesh can show, so that another mesh gets other heights.
+TEST(SameLatticeField, IsNotSaidOfAnExponentialNorTrueOfIt) {
+  const std::vector<Vec3> coarse = test::icosphere(2).nodes;
+  std::vector<double> fine = heights(test::icosphere(3).nodes, exponential);
+  fine.resize(coarse.size());
+  EXPECT_GT(largest_difference(heights(coarse, exponential), fine), 0.1);
+}
+
+TEST(SameLatticeField, OnAnyNumberOfThreads) {
+  const std::vector<Vec3> places = test::icosphere(4).nodes;
+  for (const auto& [name, autocorrelation] : test::some_autocorrelations(0.3)) {
+    const Autocorrelation rho(autocorrelation);
+    const auto on_threads = [&](int n) {
+      const detail::ThreadLimit limit(n);
+      return heights(places, rho);
+    };
+    const std::vector<double> one = on_threads(1);
+    EXPECT_EQ(one, on_threads(2)) << name;
+    EXPECT_EQ(one, on_threads(7)) << name;
+  }
+}
+
+TEST(SameLatticeField, AloneAndAmongTen) {
+  const std::vector<Vec3> places = test::icosphere(2).nodes;
+  for (const auto& [name, autocorrelation] : test::some_autocorrelations(0.4)) {
+    const Autocorrelation rho(autocorrelation);
+    const FieldSampler among = lattice_sampler(places, rho, Distance::euclidean());
+    std::vector<std::vector<double>> ten;
+    for (std::uint64_t k = 0; k < 10; ++k) ten.push_back(among.heights(1, k));
+    const FieldSampler alone = lattice_sampler(places, rho, Distance::euclidean());
+    EXPECT_EQ(alone.heights(1, 7), ten[7]) << name;
+    EXPECT_EQ(among.heights(1, 7), ten[7]) << name;
+    EXPECT_GT(largest_difference(ten[6], ten[7]), 0.1) << name;
+    EXPECT_GT(largest_difference(among.heights(2, 7), ten[7]), 0.1) << name;
+  }
+}
+
+// 1024 is a power of two, so that not a bit of the places in units of the length changes.
+TEST(SameLatticeField, InAnyUnitOfLength) {
+  const std::vector<Vec3> places = test::icosphere(2).nodes;
+  for (std::size_t k = 0; k < test::all_autocorrelations(1).size(); ++k)
+    for (const double unit : {0x1p-30, 1024.0}) {
+      const Autocorrelation small(test::all_autocorrelations(0.5)[k].options);
+      const Autocorrelation large(test::all_autocorrelations(0.5 * unit)[k].options);
+      EXPECT_LT(
+          largest_difference(heights(places, small), heights(test::scaled(places, unit), large)),
+          1e-9)
+          << test::all_autocorrelations(1)[k].name;
+    }
+}
+
+}  // namespace
+}  // namespace roughmesh
