@@ -124,7 +124,8 @@ std::string refuse_option_as_value(const std::string& given) {
 
 /// Options that only job files can hold.
 template <class Member>
-constexpr bool is_table = std::is_same_v<Member, std::vector<Mask>>;
+constexpr bool is_for_jobs =
+    std::is_same_v<Member, std::vector<Mask>> || std::is_same_v<Member, std::vector<Vec3>>;
 
 /// Adds options to a verb; `only` names the ones that it takes, all if empty.
 class OptionAdder {
@@ -134,7 +135,7 @@ class OptionAdder {
 
   template <class Member>
   void operator()(const OptionText& text, Member& member) {
-    if constexpr (!is_table<Member>) add(text, member);
+    if constexpr (!is_for_jobs<Member>) add(text, member);
   }
 
   std::vector<CLI::Option*> added;
@@ -185,10 +186,11 @@ struct Parser {
     info =
         app.add_subcommand("info", "list groups and sizes, and what roughness the mesh can carry");
     add_options(*info, command.options,
-                {"input",     "group",    "rms",     "length",       "acf",   "length_definition",
-                 "nu",        "hurst",    "rolloff", "power",        "alpha", "table",
-                 "angle",     "distance", "period",  "edge_angle",   "flip",  "unit",
-                 "mesh_size", "gmsh",     "timeout", "trust_scripts"});
+                {"input",        "group",  "rms",     "length",    "acf",      "length_definition",
+                 "nu",           "hurst",  "rolloff", "power",     "alpha",    "table",
+                 "angle",        "cutoff", "method",  "tolerance", "distance", "period",
+                 "edge_angle",   "flip",   "unit",    "mesh_size", "gmsh",     "timeout",
+                 "trust_scripts"});
     info->footer(exit_codes);
   }
 

@@ -137,6 +137,26 @@ void print_limits(const Resolution& r, const std::string& unit) {
   fmt::print("  {:<34} {:.4g} {}\n", "largest safe Rq by curvature", r.largest_safe_rq, unit);
 }
 
+/// What one point tells of the field on all of them, at no cost.
+void print_sampling(const FieldOptions& options, const Correlation& correlation) {
+  const Index first = 0;
+  const FieldSampler sampler(correlation.among({&first, 1}), options);
+  const FieldSummary& summary = sampler.summary();
+  fmt::print("\nhow it is sampled\n");
+  fmt::print("  {:<34} {}\n", "method", name(summary.method));
+  if (summary.cholesky) {
+    const auto n = static_cast<double>(correlation.n_points());
+    fmt::print("  {:<34} {:.3g} GiB\n", "memory of the matrix", n * n * sizeof(double) / (1 << 30));
+    return;
+  }
+  const LatticeSummary& lattice = *summary.lattice;
+  if (options.cutoff)
+    fmt::print("  {:<34} {:.2g} % (Rq is then {:.4g} of --rms)\n", "variance below the cutoff",
+               100 * lattice.lost_variance, std::sqrt(1 - lattice.lost_variance));
+  fmt::print("  {:<34} {}\n", "same heights on other meshes",
+             lattice.same_on_other_meshes ? "yes" : "no (--cutoff LENGTH makes them)");
+}
+
 /// Without a length asked for, the shortest the mesh carries; without heights, heights of 1.
 Roughness with_defaults(Roughness options, bool has_rms, const Surface& surface) {
   const bool has_length =
@@ -154,7 +174,7 @@ void run_info(const RoughenOptions& options, bool has_rms) {
   const Roughness& request = options.surfaces.front();
   if (has_rms && !(std::isfinite(request.rms) && request.rms > 0))
     throw InputError(fmt::format("--rms: {:g}; must be a positive number", request.rms));
-  check_shape(request);
+  check_field_options(options);
   const Mesh mesh = read_input(options);
   print_mesh(mesh, options.input);
   print_groups(mesh);
@@ -174,9 +194,10 @@ void run_info(const RoughenOptions& options, bool has_rms) {
   print_lengths(model.correlation.autocorrelation(), unit);
   print_resolution(resolution, has_rms, request.rms, unit);
   print_limits(resolution, unit);
+  print_sampling(field_options(options, model.request), model.correlation);
   const double rq = has_rms ? request.rms : 0.0;
   for (const std::string& warning : resolution_warnings(resolution, rq))
-    fmt::print("warning: {}\n", warning);
+    fmt::print("warning: {}{}\n", request.cutoff ? "before the cutoff: " : "", warning);
   if (!model.refusal.empty()) fmt::print("warning: {}\n", model.refusal);
 }
 

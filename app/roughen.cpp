@@ -9,11 +9,12 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "roughmesh/pipeline.hpp"
 
 #include "commands.hpp"
+#include "interrupt.hpp"
+#include "progress.hpp"
 
 namespace roughmesh::app {
 namespace {
@@ -23,39 +24,6 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
-
-/// One line that rewrites itself, on a terminal only.
-class ProgressBar {
- public:
-  explicit ProgressBar(const RoughenOptions& options)
-      : total_(options.realizations), visible_(!options.quiet && isatty(STDERR_FILENO) != 0) {
-    show(0);
-  }
-  ~ProgressBar() {
-    if (visible_) fmt::print(stderr, "\r{:60}\r", "");
-  }
-  ProgressBar(const ProgressBar&) = delete;
-  ProgressBar& operator=(const ProgressBar&) = delete;
-
-  void show(std::uint64_t n_done) const {
-    if (!visible_) return;
-    const double elapsed = seconds_since(start_);
-    const std::string remaining =
-        n_done == 0 ? std::string("preparing")
-                    : fmt::format("{:.0f} s left", elapsed / static_cast<double>(n_done) *
-                                                       static_cast<double>(total_ - n_done));
-    const auto filled =
-        static_cast<std::size_t>(20.0 * static_cast<double>(n_done) / static_cast<double>(total_));
-    fmt::print(stderr, "\r[{:<20}] {}/{} {:20}", std::string(filled, '#'), n_done, total_,
-               remaining);
-    std::fflush(stderr);
-  }
-
- private:
-  std::uint64_t total_;
-  bool visible_;
-  Clock::time_point start_ = Clock::now();
-};
 
 void require_files(const RoughenOptions& options) {
   if (options.input.empty())
@@ -79,7 +47,14 @@ void print_statistics(const SurfaceStatistics& s) {
 std::string method_in_words(const FieldSummary& field) {
   if (field.cholesky)
     return fmt::format("{} of rank {}", name(field.cholesky->factorization), field.cholesky->rank);
-  return fmt::format("lattice of {} Gaussians", field.lattice->terms.size());
+  const LatticeSummary& lattice = *field.lattice;
+  const std::size_t n = lattice.terms.size();
+  return fmt::format(
+      "lattice of {} Gaussian{}{}{}", n, n == 1 ? "" : "s",
+      lattice.lost_variance > 0
+          ? fmt::format(", {:.2g} % of the variance below the cutoff", 100 * lattice.lost_variance)
+          : "",
+      lattice.same_on_other_meshes ? ", same heights on other meshes" : "");
 }
 
 void print_summary(const Report& report, const std::string& path_of_report) {
@@ -190,9 +165,19 @@ void warn_of_digits(const Mesh& mesh, const std::string& path, Report& report) {
   }
 }
 
+/// After an interrupt, unless that was the last realization.
+void stop_if_interrupted(const RoughenOptions& options, std::uint64_t realization) {
+  if (interrupted() == 0 || realization - options.first + 1 == options.realizations) return;
+  throw Interrupt(
+      fmt::format("interrupted; realizations {} to {} are kept, go on with --first {} and a "
+                  "--report of its own",
+                  options.first, realization, realization + 1));
+}
+
 void make_realizations(const Mesh& mesh, const RoughenOptions& options,
-                       const std::vector<std::string>& losses, ReportFile& file) {
-  const ProgressBar progress(options);
+                       const std::vector<std::string>& losses, ReportFile& file,
+                       ProgressBar& progress) {
+  const GracePeriod grace;
   const auto deliver = [&](const RoughMesh& rough, Report& report) {
     const std::string path = output_path(options.output, rough.realization);
     write_mesh(rough.mesh, path, with_fields(write_options(options), rough, path));
@@ -202,10 +187,11 @@ void make_realizations(const Mesh& mesh, const RoughenOptions& options,
           fmt::format("OUTPUT does not hold all of INPUT; left out: {}", list_of(losses)));
     report.realizations.back().path = path;
     file.update(report);
-    progress.show(report.realizations.size());
+    progress.finish_realization();
+    stop_if_interrupted(options, rough.realization);
   };
   try {
-    file.finish(roughen(mesh, options, deliver));
+    file.finish(roughen(mesh, options, deliver, [&](const Progress& p) { progress.begin(p); }));
   } catch (const std::exception& error) {
     file.stop(error.what());
     throw;
@@ -237,10 +223,12 @@ Mesh read_input(const RoughenOptions& options) {
   return mesh_geometry(options.input, geometry_options(options));
 }
 
-void run_roughen(const RoughenOptions& options) {
+namespace {
+
+/// Everything until the last file is written.
+ReportFile roughen_files(const RoughenOptions& options) {
   const Clock::time_point start = Clock::now();
-  require_files(options);
-  check_options(options);
+  ProgressBar progress(options);
   const Mesh mesh = read_input(options);
   // Before the hours that a large surface may take.
   const std::string first_path = output_path(options.output, options.first);
@@ -249,7 +237,16 @@ void run_roughen(const RoughenOptions& options) {
       conversion_losses(mesh, first_path, write_options(options));
   check_text_output(report_path(options));
   ReportFile file(report_path(options), start, seconds_since(start));
-  make_realizations(mesh, options, losses, file);
+  make_realizations(mesh, options, losses, file, progress);
+  return file;
+}
+
+}  // namespace
+
+void run_roughen(const RoughenOptions& options) {
+  require_files(options);
+  check_options(options);
+  const ReportFile file = roughen_files(options);
   if (options.quiet) return;
   print_summary(file.latest(), file.path());
   print_warnings(file.latest());

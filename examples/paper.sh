@@ -20,12 +20,12 @@ Mesh.MeshSizeMax = $1;
 GEO
 }
 
-# usage: roughen INPUT NAME RMS LENGTH; the same heights as .msh, which solvers read, and as .vtu
+# usage: roughen INPUT NAME RMS LENGTH; by the paper's method, the same heights as .msh, which solvers read, and .vtu
 roughen() {
   local extension
   for extension in msh vtu; do
     "$roughmesh" roughen "$1" -o "$folder/$2_{realization}.$extension" --rms "$3" --length "$4" \
-      --realizations "$realizations" --report "$folder/$2.report.json" --quiet
+      --method cholesky --realizations "$realizations" --report "$folder/$2.report.json" --quiet
   done
 }
 

@@ -192,8 +192,8 @@ Distance Distance::with_period(DistanceKind kind, const Vec3& period,
   off_diagonal.diagonal().setZero();
   if (!off_diagonal.isZero(0))
     throw InputError(
-        fmt::format("--angle turns the axes of the lengths, but --distance {} needs lengths along "
-                    "the axes of the period; leave --angle out",
+        fmt::format("--angle or axes turn the directions of the lengths, but --distance {} needs "
+                    "lengths along the axes of the period; leave them out",
                     name(kind)));
   result.kind_ = kind;
   result.period_ = period;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "roughmesh/field_model.hpp"
 
-#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -18,8 +17,7 @@ Anisotropy anisotropy_of(const Roughness& request, double length) {
   Anisotropy anisotropy{.lengths = {length, length, length}};
   if (request.length.size() > 1)
     anisotropy.lengths = {request.length[0], request.length[1], request.length.back()};
-  const double turn = request.angle / 180.0 * std::numbers::pi;
-  anisotropy.axes = Eigen::AngleAxisd(turn, Vec3::UnitZ()).toRotationMatrix();
+  anisotropy.axes = length_axes(request);
   return anisotropy;
 }
 

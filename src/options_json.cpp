@@ -42,6 +42,11 @@ ordered_json to_json_value(const std::vector<double>& value) {
   for (const double number : value) list.push_back(number_to_json(number));
   return list;
 }
+ordered_json to_json_value(const std::vector<Vec3>& value) {
+  ordered_json list = ordered_json::array();
+  for (const Vec3& v : value) list.push_back({v.x(), v.y(), v.z()});
+  return list;
+}
 ordered_json to_json_value(const std::vector<Mask>& value) {
   ordered_json list = ordered_json::array();
   for (const Mask& mask : value) list.push_back(mask_to_json(mask));
@@ -91,6 +96,15 @@ void from_json_value(const json& value, std::vector<double>& target) {
   target.clear();
   if (!value.is_array()) return target.push_back(require_number(value));
   for (const json& item : value) target.push_back(require_number(item));
+}
+void from_json_value(const json& value, std::vector<Vec3>& target) {
+  const WrongType wrong{"a list of directions [x, y, z]"};
+  if (!value.is_array()) throw wrong;
+  target.clear();
+  for (const json& item : value) {
+    if (!item.is_array() || item.size() != 3) throw wrong;
+    target.emplace_back(require_number(item[0]), require_number(item[1]), require_number(item[2]));
+  }
 }
 void from_json_value(const json& value, std::vector<Mask>& target) {
   if (!value.is_array()) throw WrongType{"tables, written [[mask]] in TOML"};

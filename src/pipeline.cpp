@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -18,16 +19,27 @@
 namespace roughmesh {
 namespace {
 
-/// Runs a stage and adds its wall-clock time to `seconds`.
-template <class Stage>
-auto timed(double& seconds, Stage&& stage) {
+/// Adds the wall-clock time of its life to `seconds`.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& seconds) : seconds_(seconds) {}
+  ~Stopwatch() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
   using Clock = std::chrono::steady_clock;
-  struct Add {
-    double& seconds;
-    Clock::time_point start = Clock::now();
-    ~Add() { seconds += std::chrono::duration<double>(Clock::now() - start).count(); }
-  } const add{seconds};
-  return stage();
+  double& seconds_;
+  Clock::time_point start_ = Clock::now();
+};
+
+/// Of one of the members.
+std::string_view name_of(const double& seconds, const Timings& timings) {
+  std::string_view found;
+  for_each_timing(timings, [&](std::string_view name, const double& each) {
+    if (&each == &seconds) found = name;
+  });
+  return found;
 }
 
 Report begin_report(const Mesh& mesh, const RoughenOptions& options) {
@@ -90,19 +102,22 @@ std::vector<std::string> cited_works(std::span<const FieldSampler> samplers,
   return works;
 }
 
-/// Covariance between the points of a surface that the sampler really has.
+/// Covariance between the points of a surface, where it is not the correlation: what clipped
+/// eigenvalues leave, or what is asked for under a cutoff.
 std::function<double(Index, Index)> covariance_of(const FieldSampler& sampler,
                                                   const SurfacePlan& plan, const FieldPlan& field) {
   const auto& cholesky = sampler.summary().cholesky;
-  if (!cholesky || cholesky->factorization != Factorization::eigenvalue) return {};
+  const bool is_clipped = cholesky && cholesky->factorization == Factorization::eigenvalue;
+  if (!is_clipped && !plan.request.cutoff) return {};
   const std::vector<Index> sampled = masters(field.partners);
   std::vector<Index> position;
   for (const Index point : plan.field_point)
     position.push_back(static_cast<Index>(
         std::lower_bound(sampled.begin(), sampled.end(), field.partners.master[point]) -
         sampled.begin()));
-  return [&sampler, position = std::move(position)](Index i, Index j) {
-    return sampler.covariance(position[i], position[j]);
+  return [&sampler, is_clipped, position = std::move(position)](Index i, Index j) {
+    return is_clipped ? sampler.covariance(position[i], position[j])
+                      : sampler.target(position[i], position[j]);
   };
 }
 
@@ -180,8 +195,8 @@ VolumeMethod volume_method(const RoughenOptions& options) {
 /// The stages of one run, in order; each fills in its part of the report.
 class Run {
  public:
-  Run(const Mesh& mesh, const RoughenOptions& options, Report report)
-      : mesh_(mesh), options_(options), report_(std::move(report)) {}
+  Run(const Mesh& mesh, const RoughenOptions& options, Report report, const Watch& watch)
+      : mesh_(mesh), options_(options), report_(std::move(report)), watch_(watch) {}
 
   Report make(const Deliver& deliver) {
     select();
@@ -199,7 +214,7 @@ class Run {
         rough_.surfaces, [&](std::size_t s) -> const auto& { return rough_.surfaces[s].normals; },
         Vec3::Zero());
     for (std::uint64_t k = 0; k < options_.realizations; ++k) {
-      rough.realization = options_.first + k;
+      realization_ = rough.realization = options_.first + k;
       realize(mover, rough);
       timed(times().write, [&] { deliver(rough, report_); });
     }
@@ -208,6 +223,14 @@ class Run {
 
  private:
   Timings& times() { return report_.timings; }
+
+  /// Runs a stage: tells that it begins, and adds its time to that of its name.
+  template <class Stage>
+  std::invoke_result_t<Stage> timed(double& seconds, Stage&& stage) {
+    if (watch_) watch_({name_of(seconds, times()), realization_});
+    const Stopwatch stopwatch(seconds);
+    return stage();
+  }
 
   void select() {
     rough_ =
@@ -229,10 +252,12 @@ class Run {
 
   void prepare_fields() {
     std::vector<Audit> audits;
-    for (const FieldPlan& plan : rough_.fields) {
+    for (std::size_t f = 0; f < rough_.fields.size(); ++f) {
+      const FieldPlan& plan = rough_.fields[f];
+      FieldOptions sampling = field_options(options_, request_of(f));
+      sampling.dimension = plan.dimension;
       samplers_.push_back(timed(times().field, [&] {
-        return FieldSampler(plan.correlation.among(masters(plan.partners)),
-                            field_options(options_));
+        return FieldSampler(plan.correlation.among(masters(plan.partners)), sampling);
       }));
       audits.push_back(timed(times().audit, [&] { return samplers_.back().audit(); }));
     }
@@ -255,16 +280,17 @@ class Run {
     std::vector<std::vector<double>> fields, heights;
     for (std::size_t f = 0; f < samplers_.size(); ++f)
       fields.push_back(
-          expand(rough_.fields[f].partners, samplers_[f].heights(seed_of(f), realization)));
+          expand(rough_.fields[f].partners, samplers_[f].heights(request_of(f).seed, realization)));
     for (const SurfacePlan& plan : rough_.plans)
       heights.push_back(detail::heights_of(plan, fields[plan.field]));
     return heights;
   }
 
-  std::uint64_t seed_of(std::size_t field) const {
+  /// Of the first surface that shows the field.
+  const Roughness& request_of(std::size_t field) const {
     return std::find_if(rough_.plans.begin(), rough_.plans.end(),
                         [&](const SurfacePlan& plan) { return plan.field == field; })
-        ->request.seed;
+        ->request;
   }
 
   /// What one surface fixes, no other moves.
@@ -311,16 +337,19 @@ class Run {
   std::vector<std::size_t> fixed_;      // positions among the moved nodes
   Index n_wall_nodes_ = 0;              // that move
   double quality_before_ = 0;
+  const Watch& watch_;
+  std::optional<std::uint64_t> realization_;  // being made
 };
 
 }  // namespace
 
-Report roughen(const Mesh& mesh, const RoughenOptions& options, const Deliver& deliver) {
+Report roughen(const Mesh& mesh, const RoughenOptions& options, const Deliver& deliver,
+               const Watch& watch) {
   check_options(options);
   const detail::ThreadLimit threads(options.threads);
   Report report = begin_report(mesh, options);
   report.request.threads = threads.n_threads();  // results are the same bits at equal threads only
-  return Run(mesh, options, std::move(report)).make(deliver);
+  return Run(mesh, options, std::move(report), watch).make(deliver);
 }
 
 std::vector<PointField> point_fields(const RoughMesh& rough) {

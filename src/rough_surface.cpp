@@ -170,6 +170,14 @@ void fill_in_distance(Roughness& request, const PeriodicPartners& linked, bool m
   request.period = {linked.period.x(), linked.period.y(), linked.period.z()};
 }
 
+/// Of the space that the places of a field fill: lines of a mesh in a plane z = const lie in a
+/// space of two dimensions, unless axes of the lengths lead out of it.
+int field_dimension(const Surface& surface, const Distance& distance) {
+  const Eigen::Matrix3d& s = distance.stretch();
+  const bool keeps_plane = s(2, 0) == 0 && s(2, 1) == 0;
+  return surface.dimension == 1 && surface.plane_normal == Vec3::UnitZ() && keeps_plane ? 2 : 3;
+}
+
 /// Every point for itself.
 PeriodicPartners no_partners(const Surface& surface) {
   PeriodicPartners partners;
@@ -191,6 +199,12 @@ void take_shared_normals(const Surface& whole, const PeriodicPartners& partners,
   }
 }
 
+FieldPlan field_plan(const Roughness& request, const Surface& whole, PeriodicPartners partners) {
+  Correlation correlation = field_model(request, whole);
+  const int dimension = field_dimension(whole, correlation.distance());
+  return {std::move(correlation), std::move(partners), dimension};
+}
+
 FieldPlan prepare_field(const Mesh& mesh, RoughSurfaces& rough,
                         std::span<const std::size_t> members, TornLinks torn_links) {
   const std::size_t first = members.front();
@@ -206,7 +220,7 @@ FieldPlan prepare_field(const Mesh& mesh, RoughSurfaces& rough,
   if (!is_periodic(*request.distance)) {
     if (torn_links == TornLinks::refused)
       refuse_broken_links(effects(rough, members, linked), linked, *request.distance);
-    return {field_model(request, whole), no_partners(whole)};
+    return field_plan(request, whole, no_partners(whole));
   }
   // By links and positions: a file need not list all of its links, and a report names the period.
   PeriodicPartners partners = partners_of(mesh, whole, request);
@@ -217,7 +231,7 @@ FieldPlan prepare_field(const Mesh& mesh, RoughSurfaces& rough,
     refuse_broken_links(classed, partners, *request.distance);
     refuse_unequal_images(classed);
   }
-  return {field_model(request, whole), std::move(partners)};
+  return field_plan(request, whole, std::move(partners));
 }
 
 SurfacePlan plan_surface(const Mesh& mesh, const Surface& surface, const Roughness& request) {

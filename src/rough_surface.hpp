@@ -31,6 +31,7 @@ struct SurfacePlan {
 struct FieldPlan {
   Correlation correlation;    ///< between the points of all its surfaces together
   PeriodicPartners partners;  ///< among those points; every point for itself unless periodic
+  int dimension = 3;          ///< of FieldOptions: 2 for the lines of a planar mesh
 };
 
 struct RoughSurfaces {

@@ -28,6 +28,20 @@ Words words_for(const Surface& surface) {
   return surface.dimension == 1 ? Words{"lines", "corners"} : Words{"faces", "edges"};
 }
 
+/// A few grains less do not matter; a share of Rq that is missing does.
+void warn_of_cutoff(Report& report, const SurfaceReport& surface, const Roughness& request) {
+  constexpr double few = 0.01;
+  const auto& lattice = surface.field.lattice;
+  if (!lattice || !request.cutoff || !(lattice->lost_variance > few)) return;
+  const double left = std::sqrt(1 - lattice->lost_variance);
+  warn(report, surface.groups,
+       fmt::format("--cutoff {:g} leaves out {:.3g} % of the variance, so that Rq is {:.4g} where "
+                   "--rms asks for {:g}; take a shorter --cutoff, or --rms {:.4g} for that Rq "
+                   "without the finer part",
+                   *request.cutoff, 100 * lattice->lost_variance, left * request.rms, request.rms,
+                   request.rms / left));
+}
+
 void warn_of_field(Report& report, const SurfaceReport& surface) {
   if (surface.audit.covariance_error > report.request.tolerance)
     warn(report, surface.groups,
@@ -71,7 +85,7 @@ void warn_of_surface(Report& report, const Surface& surface, const Roughness& re
 void warn_of_scale(Report& report, const SurfaceReport& surface, const Roughness& request) {
   const double rq = request.rms;
   for (const std::string& text : resolution_warnings(surface.resolution, rq))
-    warn(report, surface.groups, text);
+    warn(report, surface.groups, request.cutoff ? "before the cutoff: " + text : text);
   const double h = surface.mesh_size.median;
   if (rq < 1e-6 * h)
     warn(
@@ -94,7 +108,10 @@ void warn_of_scale(Report& report, const SurfaceReport& surface, const Roughness
 }
 
 void warn_of_fields(Report& report) {
-  for (const SurfaceReport& surface : report.surfaces) warn_of_field(report, surface);
+  for (std::size_t s = 0; s < report.surfaces.size(); ++s) {
+    warn_of_field(report, report.surfaces[s]);
+    warn_of_cutoff(report, report.surfaces[s], report.request.surfaces[s]);
+  }
 }
 
 void warn_of_curved_elements(Report& report, const MeshCheck& check) {

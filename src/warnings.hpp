@@ -16,8 +16,8 @@ void warn_of_surface(Report& report, const Surface& surface, const Roughness& re
 /// Roughness that the mesh or its size cannot carry; surface.resolution is set.
 void warn_of_scale(Report& report, const SurfaceReport& surface, const Roughness& request);
 
-/// Covariances beyond the tolerance, clipped eigenvalues; audit and field of report.surfaces are
-/// set.
+/// Covariances beyond the tolerance, clipped eigenvalues, variance that a cutoff leaves out; audit
+/// and field of report.surfaces are set.
 void warn_of_fields(Report& report);
 
 /// Elements that were checked at their corners only.

@@ -105,7 +105,7 @@ TEST_F(CommandLine, AReportReproducesItsMeshByteForByte) {
   // A changed input is told.
   std::filesystem::copy_file(folder / "rough.msh", folder / "ball.msh",
                              std::filesystem::copy_options::overwrite_existing);
-  EXPECT_NE(run("roughen --job job.json -o other.msh --volume none").err.find("checksum"),
+  EXPECT_NE(run("roughen --job job.json -o other.msh --rms 0.001").err.find("checksum"),
             std::string::npos);
   // Arguments override the job.
   EXPECT_EQ(run("roughen --job job.json --seed 98 -o other.msh").exit_code, 0);
@@ -215,7 +215,7 @@ TEST_F(CommandLine, HelpReportAndOptionsAgree) {
   for_every_option(options, [&](const OptionText& text, auto&) {
     ++count;
     EXPECT_TRUE(request.contains(std::string(text.name))) << text.name;
-    if (text.name == "mask") return;  // for job files only
+    if (text.name == "mask" || text.name == "axes") return;  // for job files only
     std::string flag = "--" + std::regex_replace(std::string(text.name), std::regex("_"), "-");
     if (text.name == "input") flag = "INPUT";
     EXPECT_NE(help.out.find(flag), std::string::npos) << flag;
@@ -244,7 +244,7 @@ TEST_F(CommandLine, EveryOptionRefusesNonsenseWithCodeTwo) {
       nonsense = {"=maybe"};
     else if (is_number)
       nonsense = {" x", " -1", " -1e999", " 1..2", " ''", " nan", " 0x10", " 1,"};
-    else if (std::is_enum_v<Member> || name == "method")
+    else if (std::is_enum_v<Member>)
       nonsense = {" nonsense", " ''"};
     else if (name == "group")
       nonsense = {" nobody", " -7", " 99999999999999999999999"};
@@ -297,6 +297,38 @@ TEST_F(CommandLine, SaysWhatCannotBeDone) {
     EXPECT_NE(outcome.err.find(reason), std::string::npos) << outcome.err;
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "executed"));
+}
+
+// One line that begins with the option, and before anything is computed: Rq of 10^9 would be
+// refused with code 1.
+TEST_F(CommandLine, RefusesFieldsThatAreNoneBeforeTheWork) {
+  const std::string job = "roughen ball.msh -o a.msh --group surface --rms 1e9 ";
+  for (const auto& [arguments, option] : std::vector<std::array<std::string, 2>>{
+           {"--length 1e300", "--length"},
+           {"--length 1e-300", "--length"},
+           {"--length nan", "--length"},
+           {"--length inf", "--length"},
+           {"--length -1", "--length"},
+           {"--length inf,inf", "--length"},
+           {"--length 1,nan,1", "--length"},
+           {"--length 1 --cutoff 0", "--cutoff"},
+           {"--length 1 --cutoff nan", "--cutoff"},
+           {"--length 1 --cutoff -0.1", "--cutoff"},
+           {"--length 1 --cutoff inf", "--cutoff"},
+           {"--length 1 --cutoff 0.1 --method cholesky", "--cutoff"},
+           {"--length 1 --cutoff 0.1 --distance minimum-image --period 3,0,0", "--cutoff"},
+           {"--length 1 --method lattice --distance great-circle", "--method"},
+           {"--length 1 --tolerance 0", "--tolerance"},
+           {"--length 1 --tolerance nan", "--tolerance"},
+           {"--length 1 --tolerance 2", "--tolerance"},
+           {"--length 1 --distance periodic --period 0,0,0", "--period"},
+           {"--length 1 --distance periodic --period inf,0,0", "--period"},
+           {"--length 1 --distance periodic --period 0.9,0,0", "--period"},
+           {"--length 1 --distance minimum-image --period 0.9,0,0", "--period"}}) {
+    const Outcome outcome = run(job + arguments);
+    expect_failure(outcome, 2, arguments);
+    EXPECT_TRUE(outcome.err.starts_with("roughmesh: " + option)) << outcome.err;
+  }
 }
 
 TEST_F(CommandLine, AFileThatIsNoMeshIsCodeThree) {
@@ -359,7 +391,7 @@ TEST_F(CommandLine, AStoppedRunDescribesTheRealizationsBefore) {
   EXPECT_TRUE(report["warnings"].back().get<std::string>().starts_with("stopped: "));
 }
 
-TEST_F(CommandLine, AnInterruptKeepsFinishedRealizationsOnly) {
+TEST_F(CommandLine, AnInterruptKeepsAndDescribesFinishedRealizationsOnly) {
   // Runs until a few realizations are there, then interrupts; 10^6 would take minutes.
   const Outcome outcome = test::run_in(
       folder, command + " " + sphere_job +
@@ -368,8 +400,7 @@ TEST_F(CommandLine, AnInterruptKeepsFinishedRealizationsOnly) {
   EXPECT_EQ(outcome.exit_code, 130);
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
   const std::size_t size = std::filesystem::file_size(folder / "r_0.msh");
-  int n_meshes = 0;
-  EXPECT_TRUE(std::filesystem::exists(folder / "r_.report.json"));  // of the finished ones
+  std::size_t n_meshes = 0;
   for (const std::string& name : folder.names()) {
     if (name == "ball.msh" || name == "sphere.msh" || name == "r_.report.json") continue;
     ASSERT_TRUE(std::regex_match(name, std::regex("r_\\d+\\.msh"))) << name;
@@ -378,7 +409,40 @@ TEST_F(CommandLine, AnInterruptKeepsFinishedRealizationsOnly) {
     EXPECT_GT(std::filesystem::file_size(folder / name), size / 2);
     ++n_meshes;
   }
-  EXPECT_GE(n_meshes, 4);
+  EXPECT_GE(n_meshes, 4U);
+  // The report tells of each, and the message where to go on.
+  const auto report = nlohmann::json::parse(test::read_bytes(folder / "r_.report.json"));
+  ASSERT_EQ(report["realizations"].size(), n_meshes);
+  EXPECT_EQ(report["realizations"].back()["path"], fmt::format("r_{}.msh", n_meshes - 1));
+  EXPECT_NE(outcome.err.find(fmt::format("--first {} ", n_meshes)), std::string::npos)
+      << outcome.err;
+  ASSERT_EQ(run(sphere_job + fmt::format("-o more_{{realization}}.msh --realizations 2 --first {}",
+                                         n_meshes - 1))
+                .exit_code,
+            0);
+  EXPECT_EQ(test::read_bytes(folder / fmt::format("more_{}.msh", n_meshes - 1)),
+            test::read_bytes(folder / fmt::format("r_{}.msh", n_meshes - 1)));
+}
+
+TEST_F(CommandLine, ShowsItsProgressOnATerminalOnly) {
+  if (test::run_in(folder, "command -v script").exit_code != 0) GTEST_SKIP() << "no script";
+  const std::string job = sphere_job + "-o r_{realization}.msh --realizations 1000000";
+  const auto interrupted = [&](const std::string& start) {
+    test::write_bytes(folder / "run.sh", start +
+                                             " & pid=$!\n"
+                                             "while [ ! -e r_3.msh ]; do sleep 0.02; done\n"
+                                             "sleep 0.5; kill -INT $pid; wait $pid\n");
+  };
+  interrupted(command + " " + job);
+  const std::string shown = test::run_in(folder, "script -qec 'sh run.sh' /dev/null").out;
+  EXPECT_NE(shown.find("/1000000"), std::string::npos) << shown;
+  EXPECT_NE(shown.find(" left"), std::string::npos) << shown;
+  std::filesystem::remove(folder / "r_3.msh");
+  EXPECT_EQ(test::run_in(folder, "sh run.sh").err.find(" left"), std::string::npos);
+  std::filesystem::remove(folder / "r_3.msh");
+  interrupted(command + " " + job + " --quiet");
+  EXPECT_EQ(test::run_in(folder, "script -qec 'sh run.sh' /dev/null").out.find(" left"),
+            std::string::npos);
 }
 
 TEST_F(CommandLine, InfoStatesSizesOfTheFirstFiftyGroupsAndElementsOfAll) {

@@ -168,7 +168,7 @@ TEST_F(Examples, TheirReportsAreJobsThatGiveTheSameBytes) {
 
 TEST(JobsPage, ItsBlocksAreJobs) {
   const std::vector<std::string> blocks = blocks_of(test::read_bytes(source / "docs/jobs.md"));
-  ASSERT_EQ(blocks.size(), 2U);
+  ASSERT_EQ(blocks.size(), 4U);
   const RoughenOptions simple = parsed(blocks[0]);
   EXPECT_EQ(simple.realizations, 10U);
   EXPECT_EQ(simple.surfaces.at(0).group, std::vector<std::string>{"surface"});
@@ -183,6 +183,9 @@ TEST(JobsPage, ItsBlocksAreJobs) {
     EXPECT_EQ(edges.surfaces[s].fade, example.surfaces[s].fade);
     EXPECT_TRUE(same_field(edges.surfaces[s], example.surfaces[s]));
   }
+  for (const std::size_t part : {2U, 3U}) check_options(parsed("rms = 1\n" + blocks[part]));
+  EXPECT_EQ(parsed(blocks[2]).surfaces[0].axes.size(), 2U);
+  EXPECT_EQ(parsed(blocks[3]).surfaces[0].cutoff, 2);
 }
 
 // Words of the page about keys and kinds of masks, in a job that has them all.

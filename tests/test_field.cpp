@@ -16,6 +16,9 @@
 namespace roughmesh {
 namespace {
 
+/// The method of Loth et al. (2020), which this file is about.
+const FieldOptions by_cholesky{.method = Method::cholesky};
+
 using test::largest_difference;
 
 const Autocorrelation gaussian({.family = Family::gaussian, .length = 0.4});
@@ -50,7 +53,7 @@ std::string message_of(const auto& work) {
 void expect_sample_covariance(const Autocorrelation& autocorrelation, const Distance& distance,
                               const std::vector<Vec3>& points, Factorization factorization) {
   constexpr std::uint64_t n_realizations = 4000;
-  const FieldSampler sampler(Correlation(points, autocorrelation, distance));
+  const FieldSampler sampler(Correlation(points, autocorrelation, distance), by_cholesky);
   ASSERT_EQ(sampler.summary().cholesky->factorization, factorization);
   const auto n = static_cast<int>(points.size());
   Eigen::MatrixXd heights(n, static_cast<int>(n_realizations));
@@ -85,7 +88,8 @@ TEST(FieldSampler, MeanVolumeOfARoughSphereIsTheExactOne) {
   const double radius = 2, rq = 0.1;
   Mesh mesh = test::icosphere(2, radius);
   const Autocorrelation autocorrelation({.family = Family::gaussian, .length = 0.8});
-  const FieldSampler sampler(Correlation(mesh.nodes, autocorrelation, Distance::euclidean()));
+  const FieldSampler sampler(Correlation(mesh.nodes, autocorrelation, Distance::euclidean()),
+                             by_cholesky);
   const ElementBlock& triangles = mesh.blocks.front();
   const auto cone = [&](Index t) {
     const auto node = triangles.element(t);
@@ -126,11 +130,13 @@ TEST(FieldSampler, MeanVolumeOfARoughSphereIsTheExactOne) {
 TEST(FieldSampler, RealizationIsTheSameAloneAndAmongOthers) {
   const std::vector<Vec3> points = sphere_points(3);
   for (const Autocorrelation& autocorrelation : {gaussian, exponential}) {
-    const FieldSampler among(Correlation(points, autocorrelation, Distance::euclidean()));
+    const FieldSampler among(Correlation(points, autocorrelation, Distance::euclidean()),
+                             by_cholesky);
     std::vector<std::vector<double>> ten;
     for (std::uint64_t realization = 0; realization < 10; ++realization)
       ten.push_back(among.heights(1, realization));
-    const FieldSampler alone(Correlation(points, autocorrelation, Distance::euclidean()));
+    const FieldSampler alone(Correlation(points, autocorrelation, Distance::euclidean()),
+                             by_cholesky);
     EXPECT_LT(largest_difference(alone.heights(1, 7), ten[7]), 1e-8);
     EXPECT_EQ(among.heights(1, 7), ten[7]);
     EXPECT_GT(largest_difference(ten[6], ten[7]), 0.1);
@@ -160,16 +166,16 @@ TEST(FieldSampler, HeightsDoNotDependOnTheNumberOfThreads) {
 // 1024 is a power of two, so that not even a bit of R changes.
 TEST(FieldSampler, HeightsScaleWithTheLengthUnit) {
   std::vector<Vec3> points = sphere_points(3);
-  const FieldSampler small(Correlation(points, gaussian, Distance::euclidean()));
+  const FieldSampler small(Correlation(points, gaussian, Distance::euclidean()), by_cholesky);
   for (Vec3& x : points) x *= 1024;
   const Autocorrelation longer({.family = Family::gaussian, .length = 0.4 * 1024});
-  const FieldSampler large(Correlation(points, longer, Distance::euclidean()));
+  const FieldSampler large(Correlation(points, longer, Distance::euclidean()), by_cholesky);
   EXPECT_LT(largest_difference(small.heights(0, 0), large.heights(0, 0)), 1e-8);
 }
 
 TEST(FieldSampler, CovarianceIsTheOneThatWasAskedFor) {
   const std::vector<Vec3> points = sphere_points(2);
-  const FieldSampler sampler(Correlation(points, gaussian, Distance::euclidean()));
+  const FieldSampler sampler(Correlation(points, gaussian, Distance::euclidean()), by_cholesky);
   EXPECT_NEAR(sampler.covariance(3, 90), gaussian.rho((points[3] - points[90]).norm()), 2e-8);
   EXPECT_EQ(sampler.covariance(3, 90), sampler.covariance(90, 3));
   EXPECT_NEAR(sampler.covariance(5, 5), 1, 2e-8);
@@ -180,13 +186,13 @@ TEST(FieldSampler, CovarianceIsTheOneThatWasAskedFor) {
 // 1e-8 where pivoting stops; the clipping of eigenvalues is an error against the rho asked for.
 TEST(FieldSampler, AuditAndSummaryTellWhatTheFactorizationDid) {
   const std::vector<Vec3> points = sphere_points(3);
-  const FieldSampler plain(Correlation(points, exponential, Distance::euclidean()));
+  const FieldSampler plain(Correlation(points, exponential, Distance::euclidean()), by_cholesky);
   EXPECT_EQ(plain.summary().cholesky->factorization, Factorization::cholesky);
   EXPECT_EQ(plain.summary().cholesky->rank, 642);
   EXPECT_LT(plain.audit().covariance_error, 1e-12);
   EXPECT_NEAR(plain.summary().cholesky->smallest_correlation, exponential.rho(2), 1e-12);
 
-  const FieldSampler pivoted(Correlation(points, gaussian, Distance::euclidean()));
+  const FieldSampler pivoted(Correlation(points, gaussian, Distance::euclidean()), by_cholesky);
   EXPECT_EQ(pivoted.summary().cholesky->factorization, Factorization::pivoted_cholesky);
   EXPECT_LT(pivoted.summary().cholesky->rank, 642);
   EXPECT_LT(pivoted.audit().covariance_error, 2e-8);
@@ -202,7 +208,7 @@ TEST(FieldSampler, AuditAndSummaryTellWhatTheFactorizationDid) {
 
 TEST(FieldSampler, OneAndTwoPoints) {
   const std::vector<Vec3> one = {{1, 2, 3}};
-  const FieldSampler single(Correlation(one, gaussian, Distance::euclidean()));
+  const FieldSampler single(Correlation(one, gaussian, Distance::euclidean()), by_cholesky);
   EXPECT_EQ(single.heights(4, 5), white_noise_sequence({4, 5}, 1));
   EXPECT_EQ(single.audit().n_pairs, 0);
   EXPECT_EQ(single.audit().covariance_error, 0);
@@ -210,7 +216,7 @@ TEST(FieldSampler, OneAndTwoPoints) {
 
   // d_0 = w_0, d_1 = rho w_0 + sqrt(1 - rho^2) w_1
   const std::vector<Vec3> two = {{0, 0, 0}, {0.4, 0, 0}};
-  const FieldSampler pair(Correlation(two, exponential, Distance::euclidean()));
+  const FieldSampler pair(Correlation(two, exponential, Distance::euclidean()), by_cholesky);
   const double rho = std::exp(-1.0), w0 = white_noise({4, 5}, 0), w1 = white_noise({4, 5}, 1);
   EXPECT_NEAR(pair.heights(4, 5)[0], w0, 1e-14);
   EXPECT_NEAR(pair.heights(4, 5)[1], rho * w0 + std::sqrt(1 - rho * rho) * w1, 1e-14);
@@ -225,7 +231,7 @@ TEST(FieldSampler, InfiniteLengthMakesStreaks) {
   const double inf = std::numeric_limits<double>::infinity();
   const Distance streaks = Distance::stretched({.lengths = {0.1, inf, 1.0}});
   const Autocorrelation autocorrelation({.family = Family::exponential, .length = 0.1});
-  const FieldSampler sampler(Correlation(points, autocorrelation, streaks));
+  const FieldSampler sampler(Correlation(points, autocorrelation, streaks), by_cholesky);
   EXPECT_EQ(sampler.summary().cholesky->rank, divisions + 1);
   const std::vector<double> d = sampler.heights(0, 0);
   for (std::size_t i = 1; i < points.size(); ++i)
@@ -238,7 +244,7 @@ TEST(FieldSampler, InfiniteLengthMakesStreaks) {
 TEST(FieldSampler, RefusesMemoryThatIsNotThereBeforeItTakesAny) {
   const Correlation correlation(std::vector<Vec3>(3'000'000, Vec3::Zero()), gaussian,
                                 Distance::euclidean());
-  const std::string message = message_of([&] { FieldSampler sampler(correlation); });
+  const std::string message = message_of([&] { FieldSampler(correlation, by_cholesky); });
   EXPECT_NE(message.find("3000000 points"), std::string::npos) << message;
   EXPECT_NE(message.find("67055.23 GiB"), std::string::npos) << message;  // 9e12 * 8 / 2^30
   EXPECT_NE(message.find("coarser mesh"), std::string::npos) << message;

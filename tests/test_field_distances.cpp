@@ -18,6 +18,9 @@
 namespace roughmesh {
 namespace {
 
+/// The method that takes any of them.
+const FieldOptions by_cholesky{.method = Method::cholesky};
+
 /// n points of the unit square, spread by the roots of x^3 = x + 1.
 std::vector<Vec3> spread_points(int n) {
   const double g = 1.32471795724474602596;
@@ -63,7 +66,7 @@ void expect_sample_covariance(const FieldSampler& sampler, const Eigen::MatrixXd
 }
 
 void expect_exact_field(const Correlation& correlation) {
-  const FieldSampler sampler(correlation);
+  const FieldSampler sampler(correlation, by_cholesky);
   EXPECT_NE(sampler.summary().cholesky->factorization, Factorization::eigenvalue);
   EXPECT_LT(sampler.audit().covariance_error, 2e-8);
   expect_sample_covariance(sampler, matrix_of(correlation));
@@ -92,7 +95,7 @@ TEST(FieldByDistance, MinimumImageHasTheClippedLaw) {
   const std::vector<Vec3> points = spread_points(200);
   const Correlation wide(points, Autocorrelation({.length = 0.4}),
                          Distance::minimum_image(Vec3(1, 1, 0)));
-  const FieldSampler sampler(wide);
+  const FieldSampler sampler(wide, by_cholesky);
   EXPECT_EQ(sampler.summary().cholesky->factorization, Factorization::eigenvalue);
   EXPECT_GT(sampler.summary().cholesky->negative_eigenvalues, 0);
   const Eigen::MatrixXd law = clipped(matrix_of(wide));
@@ -130,7 +133,7 @@ TEST(FieldByDistance, GaussianOnAClosedCurveHasTheClippedLaw) {
   const CurvePlaces around = curve_places(closed);
   const Correlation correlation(around.places, Autocorrelation({.length = 1.0}),
                                 Distance::curve(around.closed_lengths));
-  const FieldSampler sampler(correlation);
+  const FieldSampler sampler(correlation, by_cholesky);
   EXPECT_EQ(sampler.summary().cholesky->factorization, Factorization::eigenvalue);
   expect_sample_covariance(sampler, clipped(matrix_of(correlation)));
 }
@@ -151,7 +154,7 @@ TEST(FieldByDistance, TableHasItsFitOrItsInterpolant) {
   const Autocorrelation interpolant({.family = Family::table, .table = oscillation});
   ASSERT_GT(*interpolant.fit_residual(), 0.02);
   const Correlation correlation(points, interpolant, Distance::euclidean());
-  const FieldSampler sampler(correlation);
+  const FieldSampler sampler(correlation, by_cholesky);
   const Eigen::MatrixXd matrix = matrix_of(correlation);
   expect_sample_covariance(sampler,
                            sampler.summary().cholesky->factorization == Factorization::eigenvalue
@@ -169,7 +172,7 @@ TEST(FieldByDistance, PartnersHaveOneHeight) {
   const PeriodicPartners partners = periodic_partners(mesh, surface, period);
   const Correlation all(surface.points, Autocorrelation({.length = 0.2}),
                         Distance::periodic(period));
-  const FieldSampler sampler(all.among(masters(partners)));
+  const FieldSampler sampler(all.among(masters(partners)), by_cholesky);
   ASSERT_TRUE(sampler.summary().minimum_image_difference);
   EXPECT_GT(*sampler.summary().minimum_image_difference, 0);
   const std::vector<double> heights = expand(partners, sampler.heights(1, 0));

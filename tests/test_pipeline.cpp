@@ -79,24 +79,26 @@ TEST(Pipeline, SeedsGiveOtherSurfaces) {
             options.surfaces[0].rms);
 }
 
-// The promise of docs/math.md, "Seeds": 1e-8 Rq across threads and node numbering.
+// The promise of docs/math.md, "Seeds": equal bits for `lattice`; 1e-8 Rq for `cholesky`, by its
+// plain and its pivoted factorization.
 TEST(Pipeline, HeightsDoNotDependOnThreadsOrNumbering) {
   const Mesh sphere = test::icosphere(3);
-  for (const double length : {0.1, 0.5}) {  // plain and pivoted factorization
+  for (const auto& [method, length] :
+       {std::pair{Method::lattice, 0.1}, {Method::cholesky, 0.1}, {Method::cholesky, 0.5}}) {
     RoughenOptions options = sphere_options();
+    options.method = method;
     options.surfaces[0].length = {length};
+    const double allowed = method == Method::lattice ? 0 : 1e-8 * options.surfaces[0].rms;
     options.threads = 1;
     const Result one = run(sphere, options);
     options.threads = 2;
     const Result two = run(sphere, options);
-    EXPECT_LE(largest_difference(one.meshes[0].heights, two.meshes[0].heights),
-              1e-8 * options.surfaces[0].rms);
+    EXPECT_LE(largest_difference(one.meshes[0].heights, two.meshes[0].heights), allowed);
 
     std::vector<Index> place;
     const Result shuffled = run(renumbered(sphere, place), options);
     for (std::size_t i = 0; i < place.size(); ++i)
-      ASSERT_NEAR(shuffled.meshes[0].heights[place[i]], two.meshes[0].heights[i],
-                  1e-8 * options.surfaces[0].rms);
+      ASSERT_NEAR(shuffled.meshes[0].heights[place[i]], two.meshes[0].heights[i], allowed);
   }
 }
 
@@ -123,8 +125,9 @@ TEST(Pipeline, RigidMotionChangesNoStatistic) {
   const Eigen::Matrix3d turn =
       (Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized())).toRotationMatrix();
   for (Vec3& x : moved.nodes) x = turn * x + Vec3(10, -20, 30);
-  const Result at_rest = run(sphere, sphere_options());
-  const Result in_motion = run(moved, sphere_options());
+  const RoughenOptions options = sphere_options();
+  const Result at_rest = run(sphere, options);
+  const Result in_motion = run(moved, options);
   EXPECT_NEAR(in_motion.report.surfaces[0].area, at_rest.report.surfaces[0].area, 1e-11);
   const RealizationReport& a = at_rest.report.realizations[0];
   const RealizationReport& b = in_motion.report.realizations[0];
@@ -137,7 +140,7 @@ TEST(Pipeline, RigidMotionChangesNoStatistic) {
               5 * a.surfaces[0].sq_expected_std);
   EXPECT_NEAR(b.surfaces[0].heights.sq, b.surfaces[0].sq_expected,
               5 * b.surfaces[0].sq_expected_std);
-  EXPECT_LE(in_motion.report.surfaces[0].audit.covariance_error, 2e-8);
+  EXPECT_LE(in_motion.report.surfaces[0].audit.covariance_error, options.tolerance);
 }
 
 TEST(Pipeline, NodesMoveByTheirHeightAlongTheNormal) {
@@ -190,7 +193,7 @@ TEST(Pipeline, ReportStatesWhatWasMeasured) {
   EXPECT_EQ(json["request"]["rms"], options.surfaces[0].rms);
   EXPECT_EQ(json["surface"]["nodes"], 642);
   EXPECT_EQ(json["surface"]["elements"], 1280);
-  EXPECT_LE(json["field"]["covariance_error"].get<double>(), 2e-8);
+  EXPECT_LE(json["field"]["covariance_error"].get<double>(), options.tolerance);
   EXPECT_DOUBLE_EQ(json["field"]["equivalent_lengths"]["one_over_e"].get<double>(),
                    0.3 * std::sqrt(2.0));
   ASSERT_EQ(json["realizations"].size(), 2U);
@@ -221,7 +224,7 @@ TEST(Pipeline, WarnsOfWhatTheMeshCannotCarry) {
   };
   EXPECT_EQ(n_warnings(0.01, 1.0), 0U);
   EXPECT_GT(n_warnings(0.01, 0.1), 0U);   // h = 0.3 is coarse for l = 0.1
-  EXPECT_GT(n_warnings(0.5, 1.0), 0U);    // heights beyond the radius
+  EXPECT_GT(n_warnings(0.7, 1.0), 0U);    // heights beyond the radius
   EXPECT_GT(n_warnings(0.01, 1e3), 0U);   // unit slip: the correlation length dwarfs the body
   EXPECT_GT(n_warnings(1e-15, 1.0), 0U);  // below the digits of the coordinates
 }

@@ -44,6 +44,8 @@ struct Roughness {
   std::optional<double> nu = {}, hurst = {}, rolloff = {}, power = {}, alpha = {};
   std::string table = {};
   double angle = 0;
+  std::vector<Vec3> axes = {};  ///< directions of the lengths, of any size: two of them, or three
+  std::optional<double> cutoff = {};
   std::optional<DistanceKind> distance = {};
   std::vector<double> period = {};
   std::uint64_t seed = 0;
@@ -60,7 +62,7 @@ struct RoughenOptions {
   std::string checksum = {};
   std::string output = {};
   std::vector<Roughness> surfaces = {Roughness{}};  ///< at least one; no face may be in two
-  std::string method = "auto";
+  Method method = Method::automatic;
   double tolerance = 1e-4;
   std::uint64_t realizations = 1;
   std::uint64_t first = 0;
@@ -112,6 +114,13 @@ void for_each_autocorrelation_option(Options& o, Visit&& visit) {
       o.table);
   visit(OptionText{"angle", "DEG", "turns the axes of anisotropic lengths about z, in degrees"},
         o.angle);
+  visit(OptionText{"axes", "", "directions of anisotropic lengths; job files only"}, o.axes);
+  visit(OptionText{"cutoff", "LENGTH",
+                   "shortest scale of the roughness, in the length unit of the mesh: what is finer "
+                   "is left out with its variance, and other meshes of the body get the same "
+                   "heights at the same places (for equal seed, tolerance and options). Without it "
+                   "only gaussian does, and by --method cholesky nothing"},
+        o.cutoff);
   visit(OptionText{"distance", "KIND",
                    "distance that correlation depends on; default: euclidean, or periodic where "
                    "the mesh links moving nodes"},
@@ -177,8 +186,15 @@ void for_each_run_option(Options& o, Visit&& visit) {
                    "file to write, in the format of its extension; {realization} becomes the "
                    "number of the realization, {realization:04} with leading zeros"},
         o.output);
-  visit(OptionText{"method", "NAME", "sampling method: auto, cholesky"}, o.method);
-  visit(OptionText{"tolerance", "T", "covariance error that is accepted without a warning"},
+  visit(
+      OptionText{"method", "NAME",
+                 "sampling method (lattice: linear in the nodes, --distance euclidean or periodic; "
+                 "cholesky: any distance, memory as the square of the nodes; auto: lattice where "
+                 "it can be)"},
+      o.method);
+  visit(OptionText{"tolerance", "T",
+                   "largest error of covariances over Rq^2, between 0 and 1: lattice keeps it, and "
+                   "beyond it there is a warning"},
         o.tolerance);
   visit(OptionText{"realizations", "N", "number of meshes to make"}, o.realizations);
   visit(OptionText{"first", "K", "number of the first realization"}, o.first);
@@ -216,6 +232,10 @@ struct Choices<DistanceKind> {
                                         DistanceKind::curve};
 };
 template <>
+struct Choices<Method> {
+  static constexpr std::array values = {Method::automatic, Method::cholesky, Method::lattice};
+};
+template <>
 struct Choices<VolumeChoice> {
   static constexpr std::array values = {VolumeChoice::move, VolumeChoice::none};
 };
@@ -232,8 +252,8 @@ struct Choices<MeshFormat> {
 /// @throws InputError  names the option as on the command line, the value and the range
 void check_options(const RoughenOptions& options);
 
-/// The part of it that belongs to one surface, without its rms roughness and length.
-void check_shape(const Roughness& roughness);
+/// What of it concerns mesh and field; rms roughness and length may be missing.
+void check_field_options(const RoughenOptions& options);
 
 /// Options from a job file: TOML, or JSON (an object of options, or the report of an earlier run,
 /// whose "request" is taken). Options that the file does not name keep their defaults. Options of a
@@ -254,12 +274,15 @@ std::string report_path(const RoughenOptions& options);
 AutocorrelationOptions autocorrelation_options(const Roughness& roughness);
 SurfaceOptions surface_options(const Roughness& roughness);
 MaskOptions mask_options(const Roughness& roughness);  ///< @throws InputError  a fade without width
-FieldOptions field_options(const RoughenOptions& options);
+FieldOptions field_options(const RoughenOptions& options, const Roughness& roughness);
+/// Orthonormal columns, from the axes or the angle that are given.
+/// @throws InputError  axes that are not orthogonal to 1e-6
+Eigen::Matrix3d length_axes(const Roughness& roughness);
 WriteOptions write_options(const RoughenOptions& options);
 GeometryOptions geometry_options(const RoughenOptions& options);
 
 /// May two surfaces of a run carry one field, evaluated on both? True where all that the field
-/// depends on is equal: seed, autocorrelation, distance.
+/// depends on is equal: seed, autocorrelation, cutoff, distance.
 bool same_field(const Roughness& a, const Roughness& b);
 
 }  // namespace roughmesh

@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "roughmesh/check.hpp"
@@ -29,6 +31,15 @@ struct RoughMesh {
 /// it; its `path` may be filled in.
 using Deliver = std::function<void(const RoughMesh& rough, Report& report)>;
 
+/// Where a run is.
+struct Progress {
+  std::string_view stage;  ///< that begins: a key of `timings` in the report, such as "field"
+  std::optional<std::uint64_t> realization;  ///< being made; none: what all have in common
+};
+
+/// Told of every stage as it begins, in the thread that called roughen().
+using Watch = std::function<void(const Progress& progress)>;
+
 /// Makes options.realizations rough meshes, one after the other, and hands each to `deliver`; holds
 /// one at a time. `input`, `output` and `report` of the options are not used here. Sets the number
 /// of threads of the whole process while it runs: not for two callers at once.
@@ -37,7 +48,8 @@ using Deliver = std::function<void(const RoughMesh& rough, Report& report)>;
 /// @throws CheckError      a realization with inverted elements, unless options.allow_invalid; it
 ///                         is not delivered, earlier ones were
 /// @throws NumericalError  a solver did not converge
-Report roughen(const Mesh& mesh, const RoughenOptions& options, const Deliver& deliver);
+Report roughen(const Mesh& mesh, const RoughenOptions& options, const Deliver& deliver,
+               const Watch& watch = {});
 
 /// Heights, normals and displacements as point data, for files that carry them.
 std::vector<PointField> point_fields(const RoughMesh& rough);

@@ -65,6 +65,20 @@ struct Timings {
          write = 0, total = 0;
 };
 
+/// Calls visit(name, seconds) for each member, in the order of the stages.
+template <class Seconds, class Visit>
+void for_each_timing(Seconds& timings, Visit&& visit) {
+  visit("read", timings.read);
+  visit("surface", timings.surface);
+  visit("field", timings.field);
+  visit("audit", timings.audit);
+  visit("displace", timings.displace);
+  visit("volume", timings.volume);
+  visit("check", timings.check);
+  visit("write", timings.write);
+  visit("total", timings.total);
+}
+
 struct Report {
   // input
   std::string format;

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sums of noise under kernels are those of three plain loops, for each kernel and number of axes.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "lattice_gather.hpp"
+
+namespace roughmesh::detail {
+namespace {
+
+using Axes = std::array<LatticeAxis, 3>;
+
+/// Numbers of order 1 on a box around the kernels of all places, and what follows it.
+class TestBox {
+ public:
+  TestBox(const Axes& axes, const std::vector<Vec3>& places) {
+    std::array<std::int64_t, 3> end{};
+    box_.first.fill(std::numeric_limits<std::int64_t>::max());
+    end.fill(std::numeric_limits<std::int64_t>::min());
+    for (const Vec3& x : places)
+      for (std::size_t a = 0; a < 3; ++a) {
+        const std::int64_t first = kernel_weights(axes[a], x[static_cast<int>(a)]).first;
+        box_.first[a] = std::min(box_.first[a], first);
+        end[a] = std::max(end[a], first + axes[a].n_points());
+      }
+    for (std::size_t a = 0; a < 3; ++a) box_.size[a] = end[a] - box_.first[a];
+    const std::int64_t volume = box_.size[0] * box_.size[1] * box_.size[2];
+    values_.resize(static_cast<std::size_t>(volume + gather_padding));
+    std::mt19937 random(5);
+    for (double& value : values_) value = std::uniform_real_distribution(-1.0, 1.0)(random);
+    box_.values = values_.data();
+  }
+
+  const LatticeBox& box() const { return box_; }
+
+  /// Whatever a kernel at this place does not take in, and the numbers behind the box.
+  void set_all_but_kernel(const Axes& axes, const Vec3& x, double value) {
+    std::array<std::int64_t, 3> low{};
+    for (std::size_t a = 0; a < 3; ++a)
+      low[a] = kernel_weights(axes[a], x[static_cast<int>(a)]).first - box_.first[a];
+    const auto is_taken = [&](std::size_t a, std::int64_t point) {
+      return point >= low[a] && point < low[a] + axes[a].n_points();
+    };
+    std::size_t number = 0;
+    for (std::int64_t i = 0; i < box_.size[0]; ++i)
+      for (std::int64_t j = 0; j < box_.size[1]; ++j)
+        for (std::int64_t k = 0; k < box_.size[2]; ++k, ++number)
+          if (!is_taken(0, i) || !is_taken(1, j) || !is_taken(2, k)) values_[number] = value;
+    for (; number < values_.size(); ++number) values_[number] = value;
+  }
+
+ private:
+  LatticeBox box_;
+  std::vector<double> values_;
+};
+
+double plain_sum(const Axes& axes, const LatticeBox& box, const Vec3& place) {
+  std::array<AxisWeights, 3> w;
+  std::array<std::int64_t, 3> low{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    w[a] = kernel_weights(axes[a], place[static_cast<int>(a)]);
+    low[a] = w[a].first - box.first[a];
+  }
+  double sum = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(axes[0].n_points()); ++i)
+    for (std::size_t j = 0; j < static_cast<std::size_t>(axes[1].n_points()); ++j)
+      for (std::size_t k = 0; k < static_cast<std::size_t>(axes[2].n_points()); ++k) {
+        const auto at = [&](std::size_t a, std::size_t n) {
+          return low[a] + static_cast<std::int64_t>(n);
+        };
+        sum += w[0].weight[i] * w[1].weight[j] * w[2].weight[k] *
+               box.values[(at(0, i) * box.size[1] + at(1, j)) * box.size[2] + at(2, k)];
+      }
+  return sum;
+}
+
+std::vector<Vec3> random_places(std::size_t n) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> coordinate(-2.5, 2.5);
+  std::vector<Vec3> places(n);
+  for (Vec3& x : places) x = {coordinate(random), coordinate(random), coordinate(random)};
+  return places;
+}
+
+std::vector<std::uint32_t> all_of(const std::vector<Vec3>& places) {
+  std::vector<std::uint32_t> members(places.size());
+  std::iota(members.begin(), members.end(), 0U);
+  return members;
+}
+
+// Up to 20^3 products of weights, whose squares add up to 1, with numbers of at most 1: their sum
+// is at most 20^(3/2), and rounding is a few hundred units in the last place of that.
+constexpr double rounding = 1e-12;
+
+void expect_plain_sums(const Axes& axes) {
+  const std::vector<Vec3> places = random_places(19);  // no multiple of the lanes of a vector
+  const TestBox box(axes, places);
+  std::vector<double> heights(places.size(), 0.25);
+  gather(axes, box.box(), 3.5, all_of(places), places.data(), heights.data());
+  for (std::size_t i = 0; i < places.size(); ++i)
+    EXPECT_NEAR(heights[i], 0.25 + 3.5 * plain_sum(axes, box.box(), places[i]), rounding) << i;
+}
+
+TEST(Gather, IsThreeLoopsForEveryKernel) {
+  for (const KernelWidth& width : kernel_widths()) {
+    SCOPED_TRACE(width.n_points);
+    const LatticeAxis axis(0.7, width);
+    expect_plain_sums({axis, axis, axis});
+    expect_plain_sums({LatticeAxis(), axis, axis});
+    expect_plain_sums({LatticeAxis(), LatticeAxis(), axis});
+  }
+  expect_plain_sums({});
+}
+
+TEST(Gather, TakesAxesThatDiffer) {
+  const auto widths = kernel_widths();
+  for (std::size_t k = 0; k + 2 < widths.size(); ++k) {
+    SCOPED_TRACE(k);
+    const LatticeAxis a(0.7, widths[k]), b(1.1, widths[k + 2]), flat;
+    for (const double period : {0.8, 2.0, 9.0}) {
+      const LatticeAxis c(0.7, widths[k + 1], period);
+      expect_plain_sums({a, b, c});
+      expect_plain_sums({c, a, b});
+      expect_plain_sums({flat, c, b});
+      expect_plain_sums({a, b, flat});
+      expect_plain_sums({c, flat, a});
+    }
+  }
+}
+
+TEST(Gather, AddsToItsMembersAlone) {
+  const LatticeAxis axis(0.7, kernel_widths()[5]);
+  const std::vector<Vec3> places = random_places(40);
+  const TestBox box({axis, axis, axis}, places);
+  for (std::size_t n = 0; n < 20; ++n) {
+    std::vector<std::uint32_t> members;
+    for (std::size_t k = 0; k < n; ++k) members.push_back(static_cast<std::uint32_t>(39 - 2 * k));
+    std::vector<double> some(places.size(), 1.5), all(places.size(), 1.5);
+    gather({axis, axis, axis}, box.box(), 2, members, places.data(), some.data());
+    gather({axis, axis, axis}, box.box(), 2, all_of(places), places.data(), all.data());
+    for (std::uint32_t i = 0; i < places.size(); ++i) {
+      const bool is_member = std::find(members.begin(), members.end(), i) != members.end();
+      EXPECT_EQ(some[i], is_member ? all[i] : 1.5) << i;  // the same bits in any company
+    }
+  }
+}
+
+// Vectors reach beyond a kernel, but what they find there has no weight.
+TEST(Gather, IgnoresWhatTheKernelDoesNotTakeIn) {
+  for (const KernelWidth& width : kernel_widths()) {
+    const LatticeAxis axis(0.7, width);
+    for (const Axes& axes :
+         {Axes{axis, axis, axis}, Axes{LatticeAxis(), axis, axis}, Axes{axis, axis, {}}}) {
+      const std::vector<Vec3> places = random_places(6);
+      const TestBox box(axes, places);
+      for (std::uint32_t i = 0; i < places.size(); ++i) {
+        std::vector<double> before(places.size()), after(places.size());
+        const std::vector<std::uint32_t> member = {i};
+        TestBox disturbed(axes, places);
+        disturbed.set_all_but_kernel(axes, places[i], 1e300);
+        gather(axes, box.box(), 1, member, places.data(), before.data());
+        gather(axes, disturbed.box(), 1, member, places.data(), after.data());
+        EXPECT_EQ(before, after) << width.n_points;
+      }
+    }
+  }
+}
+
+TEST(KernelWeights, AreZeroBeyondTheKernel) {
+  for (const KernelWidth& width : kernel_widths())
+    for (const LatticeAxis& axis : {LatticeAxis(0.7, width), LatticeAxis(0.7, width, 0.9), {}}) {
+      const AxisWeights weights = kernel_weights(axis, 1.234);
+      for (std::size_t p = 0; p < weights.weight.size(); ++p)
+        if (p < static_cast<std::size_t>(axis.n_points()))
+          EXPECT_GT(weights.weight[p], 0);
+        else
+          EXPECT_EQ(weights.weight[p], 0);
+    }
+}
+
+TEST(KernelWeights, StartWhereTheAxisSays) {
+  for (const KernelWidth& width : kernel_widths()) {
+    const LatticeAxis axis(0.7, width);
+    for (const Vec3& x : random_places(200))
+      for (const double unit : {1.0, 1e9}) {
+        const double place = x.x() * unit;
+        EXPECT_EQ(kernel_weights(axis, place).first, axis.first_point(place)) << place;
+      }
+    for (int point = -50; point < 50; ++point) {  // where the kernel jumps, and half way
+      const double place = 0.5 * point / axis.inverse_spacing();
+      EXPECT_EQ(kernel_weights(axis, place).first, axis.first_point(place)) << point;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace roughmesh::detail
