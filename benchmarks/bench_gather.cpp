@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bar: the gather loop of `lattice` runs at 25 % or more of the processor's peak multiply-add rate,
+// for a Gaussian with l = 2.5 h on 10^6 points at tolerance 1e-4. Useful are P^3 multiply-adds a
+// point, P being the lattice points that a kernel takes along an axis. Beside the loop alone stands
+// the whole of heights(), which makes the noise as well. Rates are those of a second of processor
+// time of one thread, while all cores do the same, so that other programs count for little.
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "roughmesh/field.hpp"
+
+#include "lattice_axis.hpp"
+#include "lattice_gather.hpp"
+#include "peak_rate.hpp"
+#include "sphere_points.hpp"
+
+namespace {
+
+using namespace roughmesh;
+
+constexpr Index n_points = 1'000'000;
+constexpr double tolerance = 1e-4;
+constexpr double length_over_spacing = 2.5;
+constexpr int samples = 9;
+constexpr int repetitions = 200;  // of the loop
+constexpr int trials = 5;
+
+struct Seconds {
+  double wall, processor;  // processor: of all threads together
+};
+
+template <class Work>
+Seconds seconds(const Work& work) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t processor_start = std::clock();
+  work();
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  return {wall.count(), static_cast<double>(std::clock() - processor_start) / CLOCKS_PER_SEC};
+}
+
+/// The kernel that one Gaussian needs in three dimensions.
+detail::KernelWidth kernel_width() {
+  const auto widths = detail::kernel_widths();
+  return *std::find_if(widths.begin(), widths.end(),
+                       [](const detail::KernelWidth& w) { return 3 * w.error <= tolerance; });
+}
+
+/// What one thread works on: the points of one cell of the sphere, and a box of numbers under them.
+class Patch {
+ public:
+  Patch(const std::vector<Vec3>& points, double length, const detail::KernelWidth& width) {
+    const detail::LatticeAxis axis(length, width);
+    axes_.fill(axis);
+    const Vec3 centre = Vec3(0.6, 0.5, 0.62).normalized();
+    const double half_edge = 12 / axis.inverse_spacing();
+    for (const Vec3& x : points)
+      if ((x - centre).lpNorm<Eigen::Infinity>() < half_edge) places_.push_back(x);
+    for (std::uint32_t i = 0; i < places_.size(); ++i) members_.push_back(i);
+    heights_.resize(places_.size());
+    make_box();
+  }
+
+  Patch(const Patch&) = delete;
+  Patch& operator=(const Patch&) = delete;
+
+  void gather() { detail::gather(axes_, box_, 1, members_, places_.data(), heights_.data()); }
+
+  std::size_t n_points() const { return places_.size(); }
+
+ private:
+  void make_box() {
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto [low, high] =
+          std::minmax_element(places_.begin(), places_.end(), [a](const Vec3& x, const Vec3& y) {
+            return x[static_cast<int>(a)] < y[static_cast<int>(a)];
+          });
+      box_.first[a] = axes_[a].first_point((*low)[static_cast<int>(a)]);
+      box_.size[a] =
+          axes_[a].first_point((*high)[static_cast<int>(a)]) + axes_[a].n_points() - box_.first[a];
+    }
+    const std::int64_t volume = box_.size[0] * box_.size[1] * box_.size[2];
+    values_.assign(static_cast<std::size_t>(volume + detail::gather_padding), 1e-3);
+    box_.values = values_.data();
+  }
+
+  std::array<detail::LatticeAxis, 3> axes_;
+  std::vector<Vec3> places_;
+  std::vector<std::uint32_t> members_;
+  std::vector<double> values_, heights_;
+  detail::LatticeBox box_;
+};
+
+/// Points that the loop alone serves in a second of one thread.
+double gather_rate(const std::vector<Vec3>& points, double length, const detail::KernelWidth& width,
+                   int n_threads) {
+  std::vector<std::unique_ptr<Patch>> patches;
+  for (int t = 0; t < n_threads; ++t)
+    patches.push_back(std::make_unique<Patch>(points, length, width));
+  double best = INFINITY;
+  for (int trial = 0; trial < trials; ++trial) {
+    const Seconds taken = seconds([&] {
+      std::vector<std::jthread> threads;
+      for (const auto& patch : patches)
+        threads.emplace_back([&patch] {
+          for (int k = 0; k < repetitions; ++k) patch->gather();
+        });
+    });
+    best = std::min(best, taken.processor);
+  }
+  return static_cast<double>(patches[0]->n_points()) * repetitions * n_threads / best;
+}
+
+Seconds sample_seconds(const std::vector<Vec3>& points, double length) {
+  const Correlation correlation(points, Autocorrelation({.length = length}), Distance::euclidean());
+  const FieldSampler sampler(correlation, {.method = Method::lattice, .tolerance = tolerance});
+  std::vector<double> wall, processor;
+  for (std::uint64_t realization = 0; realization < samples; ++realization) {
+    const Seconds taken = seconds([&] { sampler.heights(0, realization); });
+    wall.push_back(taken.wall);
+    processor.push_back(taken.processor);
+  }
+  return {bench::median(wall), bench::median(processor)};
+}
+
+void print_rate(const char* what, double points_a_second, double useful, double peak) {
+  fmt::print("{:<24} {:6.2f} million points, {:5.2f} 10^9 multiply-adds: {:.0f} % of the peak\n",
+             what, points_a_second * 1e-6, points_a_second * useful * 1e-9,
+             100 * points_a_second * useful / peak);
+}
+
+}  // namespace
+
+int main() {
+  const auto n_threads = static_cast<int>(std::thread::hardware_concurrency());
+  const bench::PeakRate peak = bench::peak_rate(n_threads);
+  const std::vector<Vec3> points = bench::sphere_points(n_points);
+  const double length = length_over_spacing * bench::sphere_spacing(n_points);
+  const detail::KernelWidth width = kernel_width();
+  const double useful = std::pow(width.n_points, 3);
+  fmt::print(
+      "{} points, Gaussian, l = 2.5 h, tolerance {:g}: P = {}; {} threads, {} with {} doubles "
+      "a vector\n",
+      points.size(), tolerance, width.n_points, n_threads, peak.target, peak.lanes);
+  fmt::print("a second of processor time of one thread (the threads had {:.0f} % of the cores):\n",
+             100 * peak.processor_share);
+  fmt::print("{:<24} {:28.2f} 10^9 multiply-adds\n", "peak (reference)", peak.multiply_adds * 1e-9);
+  print_rate("gather alone (bar: 25 %)", gather_rate(points, length, width, n_threads), useful,
+             peak.multiply_adds);
+  const Seconds sample = sample_seconds(points, length);
+  print_rate("heights(), with noise", n_points / sample.processor, useful, peak.multiply_adds);
+  fmt::print("heights(): {:.3f} s, {:.2f} million points a second on all threads\n", sample.wall,
+             n_points / sample.wall * 1e-6);
+}
