@@ -2,6 +2,7 @@
 #include "field_lattice.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -39,9 +40,13 @@ class Nugget {
 
   Key key(const Vec3& place) const {
     Key key{};
-    for (int a = 0; a < 3; ++a)
-      key[static_cast<std::size_t>(a)] = static_cast<std::uint64_t>(
-          static_cast<std::int64_t>(std::floor(place[a] * per_length_ + 0.618)));
+    for (int a = 0; a < 3; ++a) {
+      const double number = std::floor(place[a] * per_length_ + 0.618);
+      // So far from the origin that the number has no integer, its bits stand for it.
+      key[static_cast<std::size_t>(a)] =
+          std::abs(number) < 0x1p62 ? static_cast<std::uint64_t>(static_cast<std::int64_t>(number))
+                                    : std::bit_cast<std::uint64_t>(number);
+    }
     return key;
   }
 

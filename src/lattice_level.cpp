@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include <fmt/format.h>
@@ -17,6 +18,10 @@ namespace {
 /// Edge of the cells that are worked on at a time, in lattice spacings: the box of a cell then
 /// stays in the cache of a core.
 double cell_points(int n_varying) { return n_varying == 3 ? 24 : n_varying == 2 ? 128 : 4096; }
+
+/// Above any box of such a cell. The smallest cells that a body far larger than the scale can be
+/// sorted into are larger.
+constexpr double most_box_points = 0x1p20;
 
 /// Axes along which the field of a Gaussian is constant add no error.
 int n_varying(const LatticeSpace& space, double scale) {
@@ -75,20 +80,10 @@ class CellSum {
         work_.members.push_back(static_cast<std::uint32_t>(i));
   }
 
-  void add(const LatticeNoise& noise, const SortedPlaces& places, std::span<double> heights) {
-    if (work_.members.empty()) return;
-    bound(places.places());
-    mark_columns();
-    make_runs();
-    noise.fill(work_.runs);
-    gather(level_.axes, box_, std::sqrt(level_.weight), work_.members, places.places().data(),
-           heights.data());
-  }
+  bool has_members() const { return !work_.members.empty(); }
 
- private:
-  int n_points(int axis) const { return level_.axes[static_cast<std::size_t>(axis)].n_points(); }
-
-  void bound(const std::vector<Vec3>& places) {
+  /// Finds the box of the members; false if it is too large for several of them.
+  bool bound(const std::vector<Vec3>& places) {
     Indices end;
     box_.first.fill(std::numeric_limits<std::int64_t>::max());
     end.fill(std::numeric_limits<std::int64_t>::min());
@@ -101,12 +96,28 @@ class CellSum {
         box_.first[a] = std::min(box_.first[a], *point);
         end[a] = std::max(end[a], *point + axis.n_points());
       }
-    for (std::size_t a = 0; a < 3; ++a) box_.size[a] = end[a] - box_.first[a];
+    double volume = 1;
+    for (std::size_t a = 0; a < 3; ++a) {
+      box_.size[a] = end[a] - box_.first[a];
+      volume *= static_cast<double>(box_.size[a]);
+    }
+    return volume <= most_box_points || work_.members.size() == 1;
+  }
+
+  void add(const LatticeNoise& noise, const SortedPlaces& places, std::span<double> heights) {
     const std::int64_t volume = box_.size[0] * box_.size[1] * box_.size[2];
     work_.values.resize(
         std::max(work_.values.size(), static_cast<std::size_t>(volume + gather_padding)));
     box_.values = work_.values.data();
+    mark_columns();
+    make_runs();
+    noise.fill(work_.runs);
+    gather(level_.axes, box_, std::sqrt(level_.weight), work_.members, places.places().data(),
+           heights.data());
   }
+
+ private:
+  int n_points(int axis) const { return level_.axes[static_cast<std::size_t>(axis)].n_points(); }
 
   /// The noise of a column is needed from the lowest to the highest member that reaches it: of the
   /// members whose first point is in the column, then of those along the second axis, then of those
@@ -251,12 +262,17 @@ void add_level(const LatticeLevel& level, const NoiseStream& stream, const Sorte
   const std::vector<SortedPlaces::Range> cells = places.cells(
       n_axes == 0 ? std::numeric_limits<double>::max() : spacing * cell_points(n_axes));
   PerThread<Workspace> workspaces;
+  const std::function<void(SortedPlaces::Range)> add_range = [&](SortedPlaces::Range range) {
+    CellSum sum(level, workspaces.local());
+    sum.find_members(range, n_skipped, number);
+    if (!sum.has_members()) return;
+    if (sum.bound(places.places())) return sum.add(noise, places, heights);
+    const std::size_t middle = (range.first + range.second) / 2;
+    add_range({range.first, middle});
+    add_range({middle, range.second});
+  };
   parallel_for(cells.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) {
-      CellSum sum(level, workspaces.local());
-      sum.find_members(cells[c], n_skipped, number);
-      sum.add(noise, places, heights);
-    }
+    for (std::size_t c = begin; c < end; ++c) add_range(cells[c]);
   });
 }
 

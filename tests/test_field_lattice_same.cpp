@@ -81,6 +81,16 @@ TEST(SameLatticeField, OnAnyPartOfAMesh) {
   }
 }
 
+// Cells that tell a billion lengths apart hold 10^10 lattice points: too many to make at once.
+TEST(SameLatticeField, InABodyOfManyLengths) {
+  const std::vector<Vec3> sphere = test::scaled(test::icosphere(2).nodes, 400);
+  std::vector<Vec3> both = test::moved(sphere, {4e9, 0, 0});
+  both.insert(both.begin(), sphere.begin(), sphere.end());
+  std::vector<double> d = heights(both, gaussian);
+  d.resize(sphere.size());
+  EXPECT_LT(largest_difference(heights(sphere, gaussian), d), 1e-12);
+}
+
 TEST(SameLatticeField, WhateverTheOrderOfThePlaces) {
   const std::vector<Vec3> places = test::icosphere(3).nodes;
   std::vector<Index> order(places.size());
