@@ -114,7 +114,7 @@ def key_figures(results):
              "at least 300", figure(against_hmat(results, family), "{:.0f}")),
             (f"10⁶ points, {family}: GSTools with 1,000 modes over `lattice`, a further realization",
              "at least 50", figure(against_gstools(results, family, "next_s", "next_s"), "{:.0f}")),
-            (f"... covariance error: rms of GSTools over the largest of `lattice`", "at least 50",
+            ("... covariance error: rms of GSTools over the largest of `lattice`", "at least 50",
              figure(against_gstools(results, family, "pairs_rms", "pairs_error"), "{:.0f}")),
             (f"`lattice`, {family}: time of 10⁷ points over that of 10⁶", "at most 11",
              figure(growth(results, family), "{:.1f}")),
@@ -137,8 +137,10 @@ def errors_of(case):
     exact = "" if "pairs_error" not in case else small(case["pairs_error"])
     if "pairs_rms" in case:
         exact = f"{small(case['pairs_rms'])} rms, {exact} largest"
-    measured = case.get("measured")
-    return [exact, measured and f"{abs(measured['error']):.3f} ± {measured['sampling_error']:.3f}" or ""]
+    if "measured" not in case:
+        return [exact, ""]
+    measured = case["measured"]
+    return [exact, f"{abs(measured['error']):.3f} ± {measured['sampling_error']:.3f}"]
 
 
 def compared_row(case):
@@ -187,8 +189,9 @@ def tolerance_table(results):
     for family in bench_cases.FAMILIES:
         row = [find(cases, family=family, tolerance=tolerance) for tolerance in tolerances]
         if any(row):
-            rows.append([family] + [c and f"{small(c['audit']['error'])}, {seconds(c['next_s'])}" or "-"
-                                    for c in row])
+            rows.append([family] + ["-" if case is None else
+                                    f"{small(case['audit']['error'])}, {seconds(case['next_s'])}"
+                                    for case in row])
     return table(["tolerance"] + [f"{tolerance:g}" for tolerance in tolerances], rows)
 
 
@@ -214,7 +217,7 @@ def program_texts(results):
 
 
 def series(results, family):
-    """For each sampler the pairs (N, seconds of the first realization), the longest first."""
+    """For each sampler the pairs (N, seconds of the first realization), by ascending N."""
     curves = {name: {} for name in NAMES.values()}
     for case in results["compared"] + results["sweep"]:
         if "failed" not in case and case["family"] == family:
