@@ -19,6 +19,7 @@
 
 #include "lattice_axis.hpp"
 #include "lattice_gather.hpp"
+#include "lattice_space.hpp"
 #include "peak_rate.hpp"
 #include "sphere_points.hpp"
 
@@ -30,6 +31,8 @@ constexpr Index n_points = 1'000'000;
 constexpr double tolerance = 1e-4;
 constexpr double length_over_spacing = 2.5;
 constexpr int samples = 9;
+constexpr double cell_points =
+    24;                           // edge of the cells, in lattice spacings, as in lattice_level.cpp
 constexpr int repetitions = 200;  // of the loop
 constexpr int trials = 5;
 
@@ -53,16 +56,15 @@ detail::KernelWidth kernel_width() {
                        [](const detail::KernelWidth& w) { return 3 * w.error <= tolerance; });
 }
 
-/// What one thread works on: the points of one cell of the sphere, and a box of numbers under them.
+/// What one thread works on: the points of a cell, sorted as the sampler sorts them, and a box of
+/// numbers under them.
 class Patch {
  public:
-  Patch(const std::vector<Vec3>& points, double length, const detail::KernelWidth& width) {
+  Patch(const detail::SortedPlaces& sorted, double length, const detail::KernelWidth& width) {
     const detail::LatticeAxis axis(length, width);
     axes_.fill(axis);
-    const Vec3 centre = Vec3(0.6, 0.5, 0.62).normalized();
-    const double half_edge = 12 / axis.inverse_spacing();
-    for (const Vec3& x : points)
-      if ((x - centre).lpNorm<Eigen::Infinity>() < half_edge) places_.push_back(x);
+    const auto [first, end] = fullest_cell(sorted, cell_points / axis.inverse_spacing());
+    places_.assign(&sorted.places()[first], &sorted.places()[first] + (end - first));
     for (std::uint32_t i = 0; i < places_.size(); ++i) members_.push_back(i);
     heights_.resize(places_.size());
     make_box();
@@ -76,6 +78,13 @@ class Patch {
   std::size_t n_points() const { return places_.size(); }
 
  private:
+  static detail::SortedPlaces::Range fullest_cell(const detail::SortedPlaces& sorted, double edge) {
+    const std::vector<detail::SortedPlaces::Range> cells = sorted.cells(edge);
+    return *std::max_element(cells.begin(), cells.end(), [](const auto& a, const auto& b) {
+      return a.second - a.first < b.second - b.first;
+    });
+  }
+
   void make_box() {
     for (std::size_t a = 0; a < 3; ++a) {
       const auto [low, high] =
@@ -101,9 +110,10 @@ class Patch {
 /// Points that the loop alone serves in a second of one thread.
 double gather_rate(const std::vector<Vec3>& points, double length, const detail::KernelWidth& width,
                    int n_threads) {
+  const detail::SortedPlaces sorted(points, length);
   std::vector<std::unique_ptr<Patch>> patches;
   for (int t = 0; t < n_threads; ++t)
-    patches.push_back(std::make_unique<Patch>(points, length, width));
+    patches.push_back(std::make_unique<Patch>(sorted, length, width));
   double best = INFINITY;
   for (int trial = 0; trial < trials; ++trial) {
     const Seconds taken = seconds([&] {
