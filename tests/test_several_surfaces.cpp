@@ -66,6 +66,24 @@ double mean_product(const std::vector<double>& a, const std::vector<double>& b) 
 
 }  // namespace
 
+// Each its own cutoff, seed and warning: the upper edge is the one that a run of it alone makes.
+TEST(SeveralSurfaces, EachHasItsOwnCutoff) {
+  const Mesh mesh = test::strip(40, 2, 8);
+  RoughenOptions options = two_edges(2), alone = options;
+  options.surfaces[1].cutoff = 0.2;
+  const Report report = roughen(mesh, options, [](const RoughMesh&, Report&) {});
+  EXPECT_EQ(report.surfaces[0].field.lattice->lost_variance, 0);
+  EXPECT_GT(report.surfaces[1].field.lattice->lost_variance, 0.1);
+  EXPECT_EQ(std::count_if(report.warnings.begin(), report.warnings.end(),
+                          [](const std::string& text) {
+                            return text.starts_with("surface upper: --cutoff 0.2 leaves out");
+                          }),
+            1);
+  const Edges both = displacements(run(mesh, options)[0], 40, 2);
+  alone.surfaces = {options.surfaces[1]};
+  EXPECT_EQ(displacements(run(mesh, alone)[0], 40, 2).upper, both.upper);
+}
+
 // The mean over x of the product of independent edges of length L has the variance
 // Rq^4 (1/L^2) times the double integral of rho^2, below Rq^4 l / L for rho = exp(-r / l).
 TEST(SeveralSurfaces, EdgesOfDifferentSeedsAreIndependent) {
