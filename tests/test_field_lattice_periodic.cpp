@@ -79,9 +79,9 @@ TEST(PeriodicLatticeField, RepeatsItsHeights) {
   const Vec3 period(1, 1.3, 0.8);
   const std::vector<Vec3> places = random_places(200, period);
   for (const auto& [name, autocorrelation] : summable(0.2)) {
+    const Autocorrelation rho(autocorrelation);
     const auto heights = [&](const Vec3& shift) {
-      return lattice_sampler(test::moved(places, shift), Autocorrelation(autocorrelation),
-                             Distance::periodic(period))
+      return lattice_sampler(test::moved(places, shift), rho, Distance::periodic(period))
           .heights(8, 1);
     };
     const std::vector<double> d = heights(Vec3::Zero());

@@ -39,9 +39,11 @@ std::vector<SameField> same_fields() {
   return fields;
 }
 
-/// Heights of the places with these numbers.
-std::vector<double> picked(const std::vector<double>& all, const std::vector<Index>& numbers) {
-  std::vector<double> result;
+/// Places or heights with these numbers.
+template <class T>
+std::vector<T> picked(const std::vector<T>& all, const std::vector<Index>& numbers) {
+  std::vector<T> result;
+  result.reserve(numbers.size());
   for (const Index i : numbers) result.push_back(all[static_cast<std::size_t>(i)]);
   return result;
 }
@@ -63,12 +65,13 @@ TEST(SameLatticeField, OnAnyPartOfAMesh) {
   whole.emplace_back(50, -60, 70);
   whole.emplace_back(-1e4, 2, 3);
   whole.emplace_back(whole[17] + Vec3(1e-7, 0, 0));
-  for (const auto& [name, rho, options] : same_fields()) {
-    const std::vector<double> d = heights(whole, rho, options);
+  for (const SameField& field : same_fields()) {
+    const std::vector<double> d = heights(whole, field.rho, field.options);
     const auto expect_same = [&](const std::vector<Index>& numbers) {
-      std::vector<Vec3> part;
-      for (const Index i : numbers) part.push_back(whole[static_cast<std::size_t>(i)]);
-      EXPECT_LT(largest_difference(heights(part, rho, options), picked(d, numbers)), 1e-12) << name;
+      EXPECT_LT(largest_difference(heights(picked(whole, numbers), field.rho, field.options),
+                                   picked(d, numbers)),
+                1e-12)
+          << field.name;
     };
     expect_same({17});
     expect_same({30, 31});
@@ -96,8 +99,7 @@ TEST(SameLatticeField, WhateverTheOrderOfThePlaces) {
   std::vector<Index> order(places.size());
   std::iota(order.begin(), order.end(), 0);
   std::shuffle(order.begin(), order.end(), std::mt19937(1));
-  std::vector<Vec3> shuffled;
-  for (const Index i : order) shuffled.push_back(places[static_cast<std::size_t>(i)]);
+  const std::vector<Vec3> shuffled = picked(places, order);
   for (const auto& [name, autocorrelation] : test::all_autocorrelations(0.4)) {
     const Autocorrelation rho(autocorrelation);
     EXPECT_LT(largest_difference(heights(shuffled, rho), picked(heights(places, rho), order)),

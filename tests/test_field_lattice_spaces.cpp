@@ -59,9 +59,10 @@ TEST(LatticeFieldSpaces, PlaneOfDimensionTwo) {
 TEST(LatticeFieldSpaces, PlaneHasNoHeightAboveTheOrigin) {
   const std::vector<Vec3> circle = test::circle_points(test::uneven_angles(200), 2);
   for (const auto& [name, autocorrelation] : test::some_autocorrelations(0.3)) {
+    const Autocorrelation rho(autocorrelation);
     const auto heights = [&](double z) {
-      return lattice_sampler(test::moved(circle, {0, 0, z}), Autocorrelation(autocorrelation),
-                             Distance::euclidean(), {.dimension = 2})
+      return lattice_sampler(test::moved(circle, {0, 0, z}), rho, Distance::euclidean(),
+                             {.dimension = 2})
           .heights(0, 0);
     };
     EXPECT_EQ(heights(0), heights(1e3)) << name;

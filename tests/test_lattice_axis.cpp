@@ -62,8 +62,9 @@ std::vector<double> places_in_a_spacing(const LatticeAxis& axis) {
 double largest_error(const LatticeAxis& axis) {
   const double spacing = 1 / axis.inverse_spacing();
   const std::vector<double> places = places_in_a_spacing(axis);
-  std::vector<AxisRow> rows;
-  for (const double x : places) rows.push_back(row_at(axis, x));
+  std::vector<AxisRow> rows(places.size());
+  std::transform(places.begin(), places.end(), rows.begin(),
+                 [&](double x) { return row_at(axis, x); });
   // Beyond the reach the covariance is 0; up to 6 scales, where the Gaussian is 1.5e-8, or more.
   const int n_steps = std::max(axis.n_points() + 1, static_cast<int>(std::ceil(6 / spacing)));
   double largest = 0;

@@ -72,12 +72,11 @@ AxisRow polynomial_row(const LatticeAxis& axis, int n_nodes, double edge, double
   AxisRow row{kernel_weights(axis, corner + edge * node_of(n_nodes, 0)).first, 0, {}};
   for (int i = 0; i < n_nodes; ++i) {
     const AxisRow kernel = test::kernel_row(axis, corner + edge * node_of(n_nodes, i));
-    const auto shift = static_cast<int>(kernel.first - row.first);
+    const auto shift = static_cast<std::size_t>(kernel.first - row.first);
+    const auto size = static_cast<std::size_t>(kernel.size);
     const double weight = lagrange(n_nodes, i, (place - corner) / edge);
-    row.size = shift + kernel.size;
-    for (int p = 0; p < kernel.size; ++p)
-      row.value[static_cast<std::size_t>(shift + p)] +=
-          weight * kernel.value[static_cast<std::size_t>(p)];
+    row.size = static_cast<int>(shift + size);
+    for (std::size_t p = 0; p < size; ++p) row.value[shift + p] += weight * kernel.value[p];
   }
   return row;
 }

@@ -50,9 +50,8 @@ void expect_brute_force(const std::vector<Vec3>& places, const Vec3& period = Ve
 std::vector<Vec3> random_places(int n, const Vec3& size) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> part(0, 1);
-  std::vector<Vec3> places;
-  for (int i = 0; i < n; ++i)
-    places.emplace_back(Vec3(part(random), part(random), part(random)).cwiseProduct(size));
+  std::vector<Vec3> places(static_cast<std::size_t>(n));
+  for (Vec3& x : places) x = Vec3(part(random), part(random), part(random)).cwiseProduct(size);
   return places;
 }
 
