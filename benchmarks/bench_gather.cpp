@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <hwy/aligned_allocator.h>
 
 #include "roughmesh/field.hpp"
 
@@ -95,15 +96,17 @@ class Patch {
       box_.size[a] =
           axes_[a].first_point((*high)[static_cast<int>(a)]) + axes_[a].n_points() - box_.first[a];
     }
-    const std::int64_t volume = box_.size[0] * box_.size[1] * box_.size[2];
-    values_.assign(static_cast<std::size_t>(volume + detail::gather_padding), 1e-3);
-    box_.values = values_.data();
+    const auto n_values = static_cast<std::size_t>(box_.n_values());
+    values_ = hwy::AllocateAligned<double>(n_values);
+    std::fill_n(values_.get(), n_values, 1e-3);
+    box_.values = values_.get();
   }
 
   std::array<detail::LatticeAxis, 3> axes_;
   std::vector<Vec3> places_;
   std::vector<std::uint32_t> members_;
-  std::vector<double> values_, heights_;
+  hwy::AlignedFreeUniquePtr<double[]> values_;
+  std::vector<double> heights_;
   detail::LatticeBox box_;
 };
 

@@ -118,18 +118,20 @@ SmallMatrix CoarseLevels::kernel_rows(const LatticeAxis& axis, double corner, do
 void CoarseLevels::add_level_to(const LatticeLevel& level, const NoiseStream& stream,
                                 const Cell& corner, double edge, Values& values) const {
   std::array<SmallMatrix, 3> rows;
-  LatticeBox box;
+  std::array<std::int64_t, 3> first{};
+  std::size_t n_values = 1;
   for (std::size_t a = 0; a < 3; ++a) {
     rows[a] =
-        varies_[a] ? kernel_rows(level.axes[a], corner[a], edge, box.first[a]) : identity_of_one();
-    box.size[a] = rows[a].n_columns;
+        varies_[a] ? kernel_rows(level.axes[a], corner[a], edge, first[a]) : identity_of_one();
+    n_values *= static_cast<std::size_t>(rows[a].n_columns);
   }
-  std::vector<double> noise(static_cast<std::size_t>(box.size[0] * box.size[1] * box.size[2]));
-  box.values = noise.data();
+  std::vector<double> noise(n_values);
   std::vector<NoiseRun> runs;
-  for (std::int64_t x = 0; x < box.size[0]; ++x)
-    for (std::int64_t y = 0; y < box.size[1]; ++y)
-      append_runs(level.axes, box, {x, y}, {0, static_cast<std::int32_t>(box.size[2])}, runs);
+  double* column = noise.data();
+  for (std::int64_t x = 0; x < rows[0].n_columns; ++x)
+    for (std::int64_t y = 0; y < rows[1].n_columns; ++y, column += rows[2].n_columns)
+      append_runs(level.axes, {first[0] + x, first[1] + y, first[2]}, rows[2].n_columns, column,
+                  runs);
   LatticeNoise(stream, level.key).fill(runs);
   for (double& entry : rows[0].entries) entry *= std::sqrt(level.weight);
   add_tensor_product(rows, noise, values);

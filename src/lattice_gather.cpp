@@ -17,14 +17,14 @@ HWY_BEFORE_NAMESPACE();
 namespace roughmesh::detail::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Lanes = hn::CappedTag<double, gather_padding>;
+using Lanes = hn::CappedTag<double, gather_lanes>;
 using Vector = hn::Vec<Lanes>;
 
 /// Kernels of one axis at as many places as a vector has lanes: place `lane` has its weights in
 /// weight[p * lanes + lane].
 struct AxisBatch {
-  alignas(64) std::array<double, std::size_t{most_lattice_points} * gather_padding> weight;
-  alignas(64) std::array<double, gather_padding> first;
+  alignas(64) std::array<double, std::size_t{most_lattice_points} * gather_lanes> weight;
+  alignas(64) std::array<double, gather_lanes> first;
 };
 
 /// exp(-c (d - p)^2) for p = 0, 1, ... by two exponentials: the factor from one p to the next is
@@ -60,11 +60,28 @@ void pick(const LatticeAxis& axis, const AxisBatch& batch, std::size_t lane, Axi
   for (int p = 0; p < axis.n_points(); ++p) result.weight[p] = batch.weight[p * n_lanes + lane];
 }
 
+/// The same from the last multiple of the lanes in a column of the box on, with zeros around the
+/// kernel; returns how many vectors that makes.
+std::ptrdiff_t pick_aligned(const LatticeAxis& axis, const AxisBatch& batch, std::size_t lane,
+                            std::int64_t column_first, AxisWeights& result) {
+  const Lanes d;
+  const auto n_lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
+  const auto first = static_cast<std::int64_t>(batch.first[lane]);
+  const std::ptrdiff_t lead = (first - column_first) % n_lanes;
+  const std::ptrdiff_t n_vectors = (lead + axis.n_points() + n_lanes - 1) / n_lanes;
+  result.first = first - lead;
+  hn::Store(hn::Zero(d), d, result.weight.data());
+  hn::Store(hn::Zero(d), d, result.weight.data() + (n_vectors - 1) * n_lanes);
+  for (int p = 0; p < axis.n_points(); ++p)
+    result.weight[lead + p] = batch.weight[p * n_lanes + lane];
+  return n_vectors;
+}
+
 void write_weights(const LatticeAxis& axis, std::span<const double> places,
                    std::span<AxisWeights> result) {
   const std::size_t n_lanes = hn::Lanes(Lanes());
   AxisBatch batch;
-  std::array<double, gather_padding> x;
+  std::array<double, gather_lanes> x;
   for (std::size_t i = 0; i < places.size(); i += n_lanes) {
     const std::size_t n = std::min(n_lanes, places.size() - i);
     for (std::size_t lane = 0; lane < n_lanes; ++lane) x[lane] = places[i + std::min(lane, n - 1)];
@@ -73,11 +90,19 @@ void write_weights(const LatticeAxis& axis, std::span<const double> places,
   }
 }
 
-/// Sum of box columns under the weights of the first two axes, n_vectors of them side by side.
+/// The columns of a box under the kernel at one place, and their weights, each n_lanes numbers apart.
+struct Columns {
+  const double* origin;
+  std::int64_t x_stride, y_stride;
+  const double *wx, *wy;
+  int nx, ny;
+};
+
+/// Sum of the columns under the weights of the first two axes, n_vectors side by side.
 template <int n_vectors>
-HWY_INLINE void sum_columns(const double* origin, std::int64_t x_stride, std::int64_t y_stride,
-                            const double* wx, int nx, const double* wy, int ny, Vector* sums) {
+HWY_INLINE void sum_columns(const Columns& columns, Vector* sums) {
   const Lanes d;
+  const auto [origin, x_stride, y_stride, wx, wy, nx, ny] = columns;
   const std::size_t n_lanes = hn::Lanes(d);
   for (int v = 0; v < n_vectors; ++v) sums[v] = hn::Zero(d);
   for (int i = 0; i < nx; ++i) {
@@ -85,51 +110,43 @@ HWY_INLINE void sum_columns(const double* origin, std::int64_t x_stride, std::in
     for (int v = 0; v < n_vectors; ++v) plane[v] = hn::Zero(d);
     const double* row = origin + i * x_stride;
     for (int j = 0; j < ny; ++j, row += y_stride) {
-      const Vector w = hn::Set(d, wy[j]);
+      const Vector w = hn::Set(d, wy[j * n_lanes]);
       for (int v = 0; v < n_vectors; ++v)
-        plane[v] = hn::MulAdd(w, hn::LoadU(d, row + v * n_lanes), plane[v]);
+        plane[v] = hn::MulAdd(w, hn::Load(d, row + v * n_lanes), plane[v]);
     }
-    const Vector w = hn::Set(d, wx[i]);
+    const Vector w = hn::Set(d, wx[i * n_lanes]);
     for (int v = 0; v < n_vectors; ++v) sums[v] = hn::MulAdd(w, plane[v], sums[v]);
   }
 }
 
 template <int n_vectors>
-HWY_INLINE double sum_box(const double* origin, const LatticeBox& box, const AxisWeights& x, int nx,
-                          const AxisWeights& y, int ny, const double* wz) {
+HWY_INLINE double sum_box(const Columns& columns, const double* wz) {
   const Lanes d;
   Vector sums[n_vectors];  // NOLINT(*-avoid-c-arrays)
-  sum_columns<n_vectors>(origin, box.size[1] * box.size[2], box.size[2], x.weight.data(), nx,
-                         y.weight.data(), ny, sums);
+  sum_columns<n_vectors>(columns, sums);
   Vector total = hn::Zero(d);
   for (int v = 0; v < n_vectors; ++v)
-    total = hn::MulAdd(sums[v], hn::LoadU(d, wz + v * hn::Lanes(d)), total);
+    total = hn::MulAdd(sums[v], hn::Load(d, wz + v * hn::Lanes(d)), total);
   return hn::GetLane(hn::SumOfLanes(d, total));
 }
 
-double sum_at(const std::array<LatticeAxis, 3>& axes, const LatticeBox& box, const AxisWeights& x,
-              const AxisWeights& y, const AxisWeights& z) {
+HWY_INLINE double sum_at(Columns columns, const double* wz, std::ptrdiff_t n_vectors) {
   const auto n_lanes = static_cast<std::ptrdiff_t>(hn::Lanes(Lanes()));
-  const int nx = axes[0].n_points(), ny = axes[1].n_points();
-  const double* origin =
-      box.column(x.first - box.first[0], y.first - box.first[1]) + (z.first - box.first[2]);
-  const double* weight = z.weight.data();
-  std::ptrdiff_t n_vectors = (axes[2].n_points() + n_lanes - 1) / n_lanes;
   double sum = 0;
-  for (; n_vectors >= 4; n_vectors -= 4, origin += 4 * n_lanes, weight += 4 * n_lanes)
-    sum += sum_box<4>(origin, box, x, nx, y, ny, weight);
-  if (n_vectors == 3) sum += sum_box<3>(origin, box, x, nx, y, ny, weight);
-  if (n_vectors == 2) sum += sum_box<2>(origin, box, x, nx, y, ny, weight);
-  if (n_vectors == 1) sum += sum_box<1>(origin, box, x, nx, y, ny, weight);
+  for (; n_vectors >= 4; n_vectors -= 4, columns.origin += 4 * n_lanes, wz += 4 * n_lanes)
+    sum += sum_box<4>(columns, wz);
+  if (n_vectors == 3) sum += sum_box<3>(columns, wz);
+  if (n_vectors == 2) sum += sum_box<2>(columns, wz);
+  if (n_vectors == 1) sum += sum_box<1>(columns, wz);
   return sum;
 }
 
 void gather_members(const std::array<LatticeAxis, 3>& axes, const LatticeBox& box, double factor,
                     std::span<const std::uint32_t> members, const Vec3* places, double* heights) {
   const std::size_t n_lanes = hn::Lanes(Lanes());
-  std::array<std::array<double, gather_padding>, 3> x;
+  std::array<std::array<double, gather_lanes>, 3> x;
   std::array<AxisBatch, 3> batch;
-  std::array<AxisWeights, 3> weights;
+  AxisWeights z;
   for (std::size_t m = 0; m < members.size(); m += n_lanes) {
     const std::size_t n = std::min(n_lanes, members.size() - m);
     for (std::size_t a = 0; a < 3; ++a) {
@@ -138,8 +155,14 @@ void gather_members(const std::array<LatticeAxis, 3>& axes, const LatticeBox& bo
       write_batch(axes[a], x[a].data(), batch[a]);
     }
     for (std::size_t lane = 0; lane < n; ++lane) {
-      for (std::size_t a = 0; a < 3; ++a) pick(axes[a], batch[a], lane, weights[a]);
-      heights[members[m + lane]] += factor * sum_at(axes, box, weights[0], weights[1], weights[2]);
+      const std::ptrdiff_t n_vectors = pick_aligned(axes[2], batch[2], lane, box.first[2], z);
+      const double* const column =
+          box.column(static_cast<std::int64_t>(batch[0].first[lane]) - box.first[0],
+                     static_cast<std::int64_t>(batch[1].first[lane]) - box.first[1]);
+      const Columns columns{column + (z.first - box.first[2]), box.size[1] * box.column_length(),
+                            box.column_length(), &batch[0].weight[lane], &batch[1].weight[lane],
+                            axes[0].n_points(), axes[1].n_points()};
+      heights[members[m + lane]] += factor * sum_at(columns, z.weight.data(), n_vectors);
     }
   }
 }

@@ -12,14 +12,15 @@
 
 namespace roughmesh::detail {
 
-/// Numbers that vector loads may reach beyond the last point of a kernel along the third axis.
-constexpr int gather_padding = 8;
+/// Doubles of the longest vector register in use, and of a cache line: columns begin at multiples of
+/// it, so that no load straddles two lines.
+constexpr int gather_lanes = 8;
 
 /// Where the kernel at a place meets the lattice of an axis: weights of the points first,
 /// first + 1, ...; zero beyond the kernel.
 struct AxisWeights {
   std::int64_t first = 0;
-  alignas(64) std::array<double, most_lattice_points + gather_padding> weight{};
+  alignas(64) std::array<double, most_lattice_points + gather_lanes> weight{};
 };
 
 /// The weights that gather() uses.
@@ -27,15 +28,19 @@ AxisWeights kernel_weights(const LatticeAxis& axis, double x);
 void kernel_weights(const LatticeAxis& axis, std::span<const double> places,
                     std::span<AxisWeights> result);
 
-/// Values on a box of lattice points, the third axis contiguous. After the last value there is room
-/// for gather_padding numbers, which are finite.
+/// Values on a box of lattice points, the third axis contiguous. A column takes column_length()
+/// numbers, those behind its last point without meaning, but finite.
 struct LatticeBox {
   std::array<std::int64_t, 3> first{};  ///< index of its first point along each axis
   std::array<std::int64_t, 3> size{};
-  double* values = nullptr;
+  double* values = nullptr;  ///< n_values() of them, aligned to 8 * gather_lanes bytes
 
+  std::int64_t column_length() const {
+    return (size[2] + gather_lanes - 1) / gather_lanes * gather_lanes;
+  }
+  std::int64_t n_values() const { return size[0] * size[1] * column_length(); }
   double* column(std::int64_t x, std::int64_t y) const {  ///< counted from `first`
-    return values + (x * size[1] + y) * size[2];
+    return values + (x * size[1] + y) * column_length();
   }
 };
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include <fmt/format.h>
+#include <hwy/aligned_allocator.h>
 
 #include "roughmesh/error.hpp"
 
@@ -21,7 +22,7 @@ double cell_points(int n_varying) { return n_varying == 3 ? 24 : n_varying == 2 
 
 /// Above any box of such a cell. The smallest cells that a body far larger than the scale can be
 /// sorted into are larger.
-constexpr double most_box_points = 0x1p20;
+constexpr double most_box_values = 0x1p20;
 
 /// Axes along which the field of a Gaussian is constant add no error.
 int n_varying(const LatticeSpace& space, double scale) {
@@ -55,6 +56,24 @@ double work(const KernelWidth& width, double scale, double distance, int n_axes)
   return kernel + noise * std::min(kernel, share);
 }
 
+/// Room for the values of a box.
+class BoxValues {
+ public:
+  /// At least n numbers, finite, aligned as a box needs them.
+  double* make_room(std::size_t n) {
+    if (n > size_) {
+      values_ = hwy::AllocateAligned<double>(n);
+      std::fill_n(values_.get(), n, 0.0);
+      size_ = n;
+    }
+    return values_.get();
+  }
+
+ private:
+  hwy::AlignedFreeUniquePtr<double[]> values_;
+  std::size_t size_ = 0;
+};
+
 /// What one cell needs, kept from one cell to the next.
 struct Workspace {
   std::vector<std::uint32_t> members;
@@ -62,7 +81,7 @@ struct Workspace {
   std::vector<std::int32_t> lowest, highest;      ///< along the third axis, for each column
   std::vector<std::int32_t> low_line, high_line;  ///< the same, of members along one line
   std::vector<NoiseRun> runs;
-  std::vector<double> values;
+  BoxValues values;
 };
 
 using Indices = std::array<std::int64_t, 3>;
@@ -96,19 +115,14 @@ class CellSum {
         box_.first[a] = std::min(box_.first[a], *point);
         end[a] = std::max(end[a], *point + axis.n_points());
       }
-    double volume = 1;
-    for (std::size_t a = 0; a < 3; ++a) {
-      box_.size[a] = end[a] - box_.first[a];
-      volume *= static_cast<double>(box_.size[a]);
-    }
-    return volume <= most_box_points || work_.members.size() == 1;
+    for (std::size_t a = 0; a < 3; ++a) box_.size[a] = end[a] - box_.first[a];
+    const double n_values = static_cast<double>(box_.size[0]) * static_cast<double>(box_.size[1]) *
+                            static_cast<double>(box_.column_length());
+    return n_values <= most_box_values || work_.members.size() == 1;
   }
 
   void add(const LatticeNoise& noise, const SortedPlaces& places, std::span<double> heights) {
-    const std::int64_t volume = box_.size[0] * box_.size[1] * box_.size[2];
-    work_.values.resize(
-        std::max(work_.values.size(), static_cast<std::size_t>(volume + gather_padding)));
-    box_.values = work_.values.data();
+    box_.values = work_.values.make_room(static_cast<std::size_t>(box_.n_values()));
     mark_columns();
     make_runs();
     noise.fill(work_.runs);
@@ -167,9 +181,10 @@ class CellSum {
     for (std::int64_t x = 0; x < box_.size[0]; ++x)
       for (std::int64_t y = 0; y < box_.size[1]; ++y) {
         const auto column = static_cast<std::size_t>(x * box_.size[1] + y);
-        if (work_.highest[column] > 0)
-          append_runs(level_.axes, box_, {x, y}, {work_.lowest[column], work_.highest[column]},
-                      work_.runs);
+        if (work_.highest[column] == 0) continue;
+        const std::int64_t low = work_.lowest[column], n = work_.highest[column] - low;
+        append_runs(level_.axes, {box_.first[0] + x, box_.first[1] + y, box_.first[2] + low}, n,
+                    box_.column(x, y) + low, work_.runs);
       }
   }
 
@@ -187,19 +202,18 @@ AxisRow row(const LatticeAxis& axis, double x) {
 
 }  // namespace
 
-void append_runs(const std::array<LatticeAxis, 3>& axes, const LatticeBox& box,
-                 std::array<std::int64_t, 2> column, std::array<std::int32_t, 2> part,
-                 std::vector<NoiseRun>& runs) {
+void append_runs(const std::array<LatticeAxis, 3>& axes, const std::array<std::int64_t, 3>& first,
+                 std::int64_t n, double* values, std::vector<NoiseRun>& runs) {
   const LatticeAxis& along = axes[2];
   NoiseRun run;
-  run.x = axes[0].wrapped(box.first[0] + column[0]);
-  run.y = axes[1].wrapped(box.first[1] + column[1]);
-  for (std::int32_t at = part[0]; at < part[1]; at += run.n) {
-    run.z = along.wrapped(box.first[2] + at);
-    run.n = part[1] - at;
-    if (along.n_period() > 0)
-      run.n = static_cast<std::int32_t>(std::min<std::int64_t>(run.n, along.n_period() - run.z));
-    run.values = box.column(column[0], column[1]) + at;
+  run.x = axes[0].wrapped(first[0]);
+  run.y = axes[1].wrapped(first[1]);
+  for (std::int64_t done = 0; done < n; done += run.n) {
+    run.z = along.wrapped(first[2] + done);
+    const std::int64_t left = n - done;
+    run.n = static_cast<std::int32_t>(along.n_period() > 0 ? std::min(left, along.n_period() - run.z)
+                                                          : left);
+    run.values = values + done;
     runs.push_back(run);
   }
 }

@@ -27,11 +27,10 @@ struct LatticeLevel {
   std::array<LatticeAxis, 3> axes;
 };
 
-/// Appends the runs of noise of one column of a box, counted from its first point, between two
-/// numbers along the third axis; in pieces where it goes round a period.
-void append_runs(const std::array<LatticeAxis, 3>& axes, const LatticeBox& box,
-                 std::array<std::int64_t, 2> column, std::array<std::int32_t, 2> part,
-                 std::vector<NoiseRun>& runs);
+/// Appends the runs of noise of `n` points along the third axis, from the point `first` on: several
+/// where they go round a period.
+void append_runs(const std::array<LatticeAxis, 3>& axes, const std::array<std::int64_t, 3>& first,
+                 std::int64_t n, double* values, std::vector<NoiseRun>& runs);
 
 /// Levels whose errors add up to at most `error`, with as little work as that takes.
 /// @param distance  typical one of neighbours, which decides how many places share a lattice point;
