@@ -29,14 +29,15 @@ void kernel_weights(const LatticeAxis& axis, std::span<const double> places,
                     std::span<AxisWeights> result);
 
 /// Values on a box of lattice points, the third axis contiguous. A column takes column_length()
-/// numbers, those behind its last point without meaning, but finite.
+/// numbers, those behind its last point without meaning, but finite: an odd number of cache lines,
+/// so that neighbouring columns do not drive each other out of a cache.
 struct LatticeBox {
   std::array<std::int64_t, 3> first{};  ///< index of its first point along each axis
   std::array<std::int64_t, 3> size{};
   double* values = nullptr;  ///< n_values() of them, aligned to 8 * gather_lanes bytes
 
   std::int64_t column_length() const {
-    return (size[2] + gather_lanes - 1) / gather_lanes * gather_lanes;
+    return ((size[2] + gather_lanes - 1) / gather_lanes | 1) * gather_lanes;
   }
   std::int64_t n_values() const { return size[0] * size[1] * column_length(); }
   double* column(std::int64_t x, std::int64_t y) const {  ///< counted from `first`

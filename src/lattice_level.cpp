@@ -18,11 +18,11 @@ namespace {
 
 /// Edge of the cells that are worked on at a time, in lattice spacings: the box of a cell then
 /// stays in the cache of a core.
-double cell_points(int n_varying) { return n_varying == 3 ? 24 : n_varying == 2 ? 128 : 4096; }
+double cell_points(int n_varying) { return n_varying == 3 ? 72 : n_varying == 2 ? 128 : 4096; }
 
 /// Above any box of such a cell. The smallest cells that a body far larger than the scale can be
 /// sorted into are larger.
-constexpr double most_box_values = 0x1p20;
+constexpr double most_box_values = 0x1p21;
 
 /// Axes along which the field of a Gaussian is constant add no error.
 int n_varying(const LatticeSpace& space, double scale) {
