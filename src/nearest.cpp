@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "nearest.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -12,25 +14,27 @@
 namespace roughmesh::detail {
 namespace {
 
-/// One place for each run of equal ones.
-struct DistinctPlaces {
-  std::vector<Vec3> places;
-  std::vector<std::size_t> of_place;
-};
-
-DistinctPlaces distinct(std::span<const Vec3> places) {
-  DistinctPlaces result;
-  result.of_place.reserve(places.size());
-  for (const Vec3& x : places) {
-    if (result.places.empty() || result.places.back() != x) result.places.push_back(x);
-    result.of_place.push_back(result.places.size() - 1);
+/// The first of each run of equal places.
+class DistinctPlaces {
+ public:
+  explicit DistinctPlaces(std::span<const Vec3> places) : places_(places) {
+    if (std::adjacent_find(places.begin(), places.end()) == places.end()) return;
+    for (std::uint32_t i = 0; i < places.size(); ++i)
+      if (i == 0 || places[i] != places[i - 1]) firsts_.push_back(i);
   }
-  return result;
-}
+
+  std::size_t size() const { return firsts_.empty() ? places_.size() : firsts_.size(); }
+  std::size_t first(std::size_t number) const { return firsts_.empty() ? number : firsts_[number]; }
+  const Vec3& operator[](std::size_t number) const { return places_[first(number)]; }
+
+ private:
+  std::span<const Vec3> places_;
+  std::vector<std::uint32_t> firsts_;  ///< empty: no two are equal
+};
 
 /// What nanoflann asks of a set of points.
 struct Cloud {
-  const std::vector<Vec3>& places;
+  const DistinctPlaces& places;
 
   std::size_t kdtree_get_point_count() const { return places.size(); }
   double kdtree_get_pt(std::size_t i, std::size_t axis) const {
@@ -44,9 +48,9 @@ struct Cloud {
 
 class Neighbours {
  public:
-  Neighbours(const std::vector<Vec3>& places, const Vec3& period)
+  Neighbours(const DistinctPlaces& places, const Vec3& period)
       : cloud_{places}, tree_(3, cloud_, nanoflann::KDTreeSingleIndexAdaptorParams(16)) {
-    for (const Vec3& x : places) box_.extend(x);
+    for (std::size_t i = 0; i < places.size(); ++i) box_.extend(places[i]);
     add_shifts(period);
   }
 
@@ -90,13 +94,14 @@ class Neighbours {
 }  // namespace
 
 std::vector<double> nearest_distances(std::span<const Vec3> places, const Vec3& period) {
-  const DistinctPlaces once = distinct(places);
-  const Neighbours neighbours(once.places, period);
-  std::vector<double> of_distinct(once.places.size()), result(places.size());
-  parallel_for(of_distinct.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) of_distinct[i] = neighbours.distance(i);
+  const DistinctPlaces distinct(places);
+  const Neighbours neighbours(distinct, period);
+  std::vector<double> result(places.size());
+  parallel_for(distinct.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) result[distinct.first(i)] = neighbours.distance(i);
   });
-  for (std::size_t i = 0; i < result.size(); ++i) result[i] = of_distinct[once.of_place[i]];
+  for (std::size_t i = 1; i < places.size(); ++i)
+    if (places[i] == places[i - 1]) result[i] = result[i - 1];
   return result;
 }
 

@@ -6,8 +6,10 @@
 #include <limits>
 #include <numeric>
 #include <random>
+#include <span>
 
 #include <gtest/gtest.h>
+#include <hwy/aligned_allocator.h>
 
 #include "lattice_gather.hpp"
 
@@ -30,16 +32,15 @@ class TestBox {
         end[a] = std::max(end[a], first + axes[a].n_points());
       }
     for (std::size_t a = 0; a < 3; ++a) box_.size[a] = end[a] - box_.first[a];
-    const std::int64_t volume = box_.size[0] * box_.size[1] * box_.size[2];
-    values_.resize(static_cast<std::size_t>(volume + gather_padding));
+    values_ = hwy::AllocateAligned<double>(n_values());
     std::mt19937 random(5);
-    for (double& value : values_) value = std::uniform_real_distribution(-1.0, 1.0)(random);
-    box_.values = values_.data();
+    for (double& value : all()) value = std::uniform_real_distribution(-1.0, 1.0)(random);
+    box_.values = values_.get();
   }
 
   const LatticeBox& box() const { return box_; }
 
-  /// Whatever a kernel at this place does not take in, and the numbers behind the box.
+  /// Whatever a kernel at this place does not take in, and the numbers behind each column.
   void set_all_but_kernel(const Axes& axes, const Vec3& x, double value) {
     std::array<std::int64_t, 3> low{};
     for (std::size_t a = 0; a < 3; ++a)
@@ -47,17 +48,18 @@ class TestBox {
     const auto is_taken = [&](std::size_t a, std::int64_t point) {
       return point >= low[a] && point < low[a] + axes[a].n_points();
     };
-    std::size_t number = 0;
     for (std::int64_t i = 0; i < box_.size[0]; ++i)
       for (std::int64_t j = 0; j < box_.size[1]; ++j)
-        for (std::int64_t k = 0; k < box_.size[2]; ++k, ++number)
-          if (!is_taken(0, i) || !is_taken(1, j) || !is_taken(2, k)) values_[number] = value;
-    for (; number < values_.size(); ++number) values_[number] = value;
+        for (std::int64_t k = 0; k < box_.column_length(); ++k)
+          if (!is_taken(0, i) || !is_taken(1, j) || !is_taken(2, k)) box_.column(i, j)[k] = value;
   }
 
  private:
+  std::size_t n_values() const { return static_cast<std::size_t>(box_.n_values()); }
+  std::span<double> all() { return {values_.get(), n_values()}; }
+
   LatticeBox box_;
-  std::vector<double> values_;
+  hwy::AlignedFreeUniquePtr<double[]> values_;
 };
 
 double plain_sum(const Axes& axes, const LatticeBox& box, const Vec3& place) {
@@ -75,7 +77,7 @@ double plain_sum(const Axes& axes, const LatticeBox& box, const Vec3& place) {
           return low[a] + static_cast<std::int64_t>(n);
         };
         sum += w[0].weight[i] * w[1].weight[j] * w[2].weight[k] *
-               box.values[(at(0, i) * box.size[1] + at(1, j)) * box.size[2] + at(2, k)];
+               box.column(at(0, i), at(1, j))[at(2, k)];
       }
   return sum;
 }
