@@ -86,6 +86,10 @@ struct Workspace {
 
 using Indices = std::array<std::int64_t, 3>;
 
+std::int64_t floor_to_multiple(std::int64_t number, std::int64_t of) {
+  return number - (number % of + of) % of;
+}
+
 /// The work on one cell: which lattice points its members reach, their noise, the sums.
 class CellSum {
  public:
@@ -115,6 +119,8 @@ class CellSum {
         box_.first[a] = std::min(box_.first[a], *point);
         end[a] = std::max(end[a], *point + axis.n_points());
       }
+    // Then where a kernel stands among the lanes of a vector depends on its place alone.
+    box_.first[2] = floor_to_multiple(box_.first[2], gather_lanes);
     for (std::size_t a = 0; a < 3; ++a) box_.size[a] = end[a] - box_.first[a];
     const double n_values = static_cast<double>(box_.size[0]) * static_cast<double>(box_.size[1]) *
                             static_cast<double>(box_.column_length());
