@@ -36,11 +36,21 @@ Vec3 extent(std::span<const Vec3> places) {
   return box.sizes();
 }
 
+bool is_all(std::span<const Index> points, Index n) {
+  if (static_cast<Index>(points.size()) != n) return false;
+  for (Index i = 0; i < n; ++i)
+    if (points[i] != i) return false;
+  return true;
+}
+
 }  // namespace
 
 Correlation::Correlation(std::vector<Vec3> places, const Autocorrelation& autocorrelation,
                          const Distance& distance)
-    : places_(std::move(places)), autocorrelation_(autocorrelation), distance_(distance) {
+    : owned_places_(std::make_shared<const std::vector<Vec3>>(std::move(places))),
+      places_(*owned_places_),
+      autocorrelation_(autocorrelation),
+      distance_(distance) {
   check_places(places_, distance_);
   if (distance_.kind() == DistanceKind::periodic)
     images_ =
@@ -51,28 +61,34 @@ double Correlation::image_sum(const Vec3& x, const Vec3& y) const { return image
 
 Correlation Correlation::among(std::span<const Index> points) const {
   Correlation result = *this;
-  result.places_.clear();
-  result.places_.reserve(points.size());
+  if (is_all(points, n_points())) return result;
+  std::vector<Vec3> places;
+  places.reserve(points.size());
   for (const Index point : points) {
     if (point < 0 || point >= n_points())
       throw InputError(
           fmt::format("correlation among point {}: there are {} points", point, n_points()));
-    result.places_.push_back(places_[static_cast<std::size_t>(point)]);
+    places.push_back(places_[static_cast<std::size_t>(point)]);
   }
+  result.owned_places_ = std::make_shared<const std::vector<Vec3>>(std::move(places));
+  result.places_ = *result.owned_places_;
   return result;
 }
 
 std::optional<double> Correlation::minimum_image_difference() const {
-  constexpr std::size_t most_sources = 256;
+  constexpr std::size_t most_sources = 256, most_partners = 2048;
   if (!images_) return {};
-  const std::size_t n = places_.size(), n_sources = std::min(n, most_sources);
+  const std::size_t n = places_.size();
+  const std::size_t n_sources = std::min(n, most_sources), n_partners = std::min(n, most_partners);
   std::vector<double> largest(n_sources, 0);
   detail::parallel_for(n_sources, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      const Vec3& x = places_[s * n / n_sources];
-      for (const Vec3& y : places_)
+      const std::size_t source = s * n / n_sources;
+      for (std::size_t p = 0; p < n_partners; ++p) {
+        const Vec3 &x = places_[source], &y = places_[(p * n + source) / n_partners];
         largest[s] =
             std::max(largest[s], std::abs(image_sum(x, y) - autocorrelation_.rho(distance_(x, y))));
+      }
     }
   });
   return n_sources == 0 ? 0 : *std::max_element(largest.begin(), largest.end());

@@ -342,6 +342,35 @@ TEST(Correlation, ReportsTheLargestDifferenceToTheMinimumImage) {
   EXPECT_FALSE(Correlation(points, acf, Distance::euclidean()).minimum_image_difference());
 }
 
+// With more points than are compared, pairs spread over all come within one spacing, 1 / 3000, of
+// half a period, where the slope of the difference is exp(-L / (2 l)) / l.
+TEST(Correlation, OfManyPointsSomePairsTellTheDifferenceToTheMinimumImage) {
+  constexpr int n = 3000;
+  std::vector<Vec3> points;
+  for (int i = 0; i < n; ++i) points.emplace_back(static_cast<double>(i) / n, 0, 0);
+  const Correlation periodic(points,
+                             Autocorrelation({.family = Family::exponential, .length = 0.25}),
+                             Distance::periodic(Vec3(1, 0, 0)));
+  const double largest = 1 / std::cosh(2.0) - std::exp(-2.0), slope = std::exp(-2.0) / 0.25;
+  EXPECT_LE(*periodic.minimum_image_difference(), largest + 1e-12);
+  EXPECT_GE(*periodic.minimum_image_difference(), largest - slope / n);
+}
+
+TEST(Correlation, CopiesOutliveWhatTheyWereCopiedFrom) {
+  const std::vector<Vec3> points = random_points(20, Vec3(1, 1, 1), 3);
+  const std::vector<Index> all = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,
+                                  10, 11, 12, 13, 14, 15, 16, 17, 18, 19};
+  std::vector<Correlation> copies;
+  {
+    const Correlation original(points, Autocorrelation({.length = 0.3}), Distance::euclidean());
+    copies = {original, original.among(all)};
+  }
+  for (const Correlation& copy : copies) {
+    ASSERT_EQ(copy.n_points(), 20);
+    for (Index i = 0; i < 20; ++i) EXPECT_EQ(copy.places()[i], points[i]);
+  }
+}
+
 TEST(Correlation, AmongSomePointsIsTheCorrelationOfThose) {
   const std::vector<Vec3> points = random_points(20, Vec3(1, 1, 1), 12);
   const Correlation all(points, Autocorrelation({.length = 0.3}),

@@ -20,7 +20,7 @@ class ImageSum;
 
 /// R_ij of n points (docs/math.md, eq. 1): an autocorrelation function, a distance, and the place
 /// where each point stands for that distance: its position; along a curve, what curve_places()
-/// gives. Symmetric, R_ii = 1.
+/// gives. Symmetric, R_ii = 1. Cheap to copy.
 class Correlation {
  public:
   /// @param places  n of them, in the order of the points
@@ -42,21 +42,22 @@ class Correlation {
   Index n_points() const { return static_cast<Index>(places_.size()); }
   const Autocorrelation& autocorrelation() const { return autocorrelation_; }
   const Distance& distance() const { return distance_; }
-  std::span<const Vec3> places() const { return places_; }
+  std::span<const Vec3> places() const { return places_; }  ///< valid as long as a copy lives
 
   /// The correlation of these points alone, in the order given.
   /// @throws InputError  no such point
   Correlation among(std::span<const Index> points) const;
 
   /// Periodic distance: largest difference of R_ij to rho of the nearest image alone, over the
-  /// pairs with up to 256 points spread evenly over all (every pair of up to 256 points). Absent
-  /// for other distances.
+  /// pairs of up to 256 points with up to 2,048, both spread evenly over all (every pair of up to
+  /// 256 points). Absent for other distances.
   std::optional<double> minimum_image_difference() const;
 
  private:
   double image_sum(const Vec3& x, const Vec3& y) const;
 
-  std::vector<Vec3> places_;
+  std::shared_ptr<const std::vector<Vec3>> owned_places_;
+  std::span<const Vec3> places_;  ///< of owned_places_
   Autocorrelation autocorrelation_;
   Distance distance_;
   std::shared_ptr<const detail::ImageSum> images_;  ///< of periodic distance, else null
