@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <numeric>
 #include <string>
 
@@ -12,6 +13,7 @@
 
 #include "disjoint_sets.hpp"
 #include "messages.hpp"
+#include "parallel.hpp"
 #include "surface_measures.hpp"
 
 namespace roughmesh {
@@ -191,17 +193,36 @@ bool are_images(const Vec3& x, const Vec3& y, const Vec3& period) {
   return is_shifted && is_lattice_shift(x - y, period);
 }
 
+/// Points that are at least a period away from an end of the surface, along some axis: no other can
+/// be an image.
+std::vector<Index> possible_images(const Surface& surface, const Vec3& period) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : surface.points) box.extend(x);
+  const double rounding = tolerance * period.maxCoeff();
+  std::vector<Index> points;
+  for (Index i = 0; i < surface.n_points(); ++i) {
+    const Vec3& x = surface.points[i];
+    const Vec3 reach = (box.max() - x).cwiseMax(x - box.min());
+    bool reaches_image = false;
+    for (int axis = 0; axis < 3; ++axis)
+      reaches_image |= period[axis] > 0 && reach[axis] >= period[axis] - 2 * rounding;
+    if (reaches_image) points.push_back(i);
+  }
+  return points;
+}
+
 /// @return  for each axis whether points differ along it
 std::array<bool, 3> unite_equal_positions(const Surface& surface, const Vec3& period,
                                           detail::DisjointSets& classes) {
   std::array<bool, 3> is_used{};
   Vec3 corner = surface.points.front();
   for (const Vec3& x : surface.points) corner = corner.cwiseMin(x);
-  std::vector<std::pair<Key, Index>> keys(surface.points.size());
+  const std::vector<Index> points = possible_images(surface, period);
+  std::vector<std::pair<Key, Index>> keys(points.size());
   for (unsigned grids = 0; grids < 8; ++grids) {
     for (std::size_t i = 0; i < keys.size(); ++i)
-      keys[i] = {key_of(surface.points[i], corner, period, grids), static_cast<Index>(i)};
-    std::sort(keys.begin(), keys.end());
+      keys[i] = {key_of(surface.points[points[i]], corner, period, grids), points[i]};
+    detail::parallel_sort(std::span(keys), std::less<>());
     for (std::size_t i = 1, first = 0; i < keys.size(); ++i) {
       if (keys[i].first != keys[first].first) first = i;
       const Vec3 &x = surface.points[keys[i].second], &y = surface.points[keys[first].second];
@@ -226,6 +247,7 @@ void unite_matches(const Surface& surface, const Vec3& period, detail::DisjointS
 
 void unite_links(const Mesh& mesh, const Surface& surface, detail::DisjointSets& classes,
                  PeriodicPartners& partners) {
+  if (mesh.periodic_links.empty()) return;
   const std::vector<Index> point = points_of_nodes(mesh, surface);
   const std::vector<SurfaceLink> links = links_of_surface(mesh, point);
   for (const SurfaceLink& link : links)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Points that are images of each other: by links, by position, their normals and their heights.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -225,6 +226,25 @@ TEST(PeriodicPartners, NormalsAreThoseOfTheUnboundedSurface) {
   EXPECT_EQ(n_found, side * side);
   for (std::size_t i = 0; i < surface.points.size(); ++i)
     EXPECT_EQ(shared.normals[i], shared.normals[partners.master[i]]);
+}
+
+// A plate of three and a half periods along x and one along y, far from the origin: its middle has
+// images as well as its sides.
+TEST(PeriodicPartners, ByPositionAreAllPointsThatDifferByPeriods) {
+  Mesh mesh = test::plate(7, 3.5);
+  const Vec3 period(1, 3.5, 0), far(100, 200, 300);
+  for (Vec3& x : mesh.nodes) x += far;
+  const Surface surface = select_surface(mesh);
+  const PeriodicPartners partners = periodic_partners(mesh, surface, period);
+  for (Index i = 0; i < surface.n_points(); ++i) {
+    const auto is_image = [&](const Vec3& x) {
+      const Vec3 shift = surface.points[i] - x;
+      return std::abs(shift.x() - std::round(shift.x())) < 1e-9 &&
+             std::abs(shift.y() - 3.5 * std::round(shift.y() / 3.5)) < 1e-9;
+    };
+    const auto first = std::find_if(surface.points.begin(), surface.points.end(), is_image);
+    EXPECT_EQ(partners.master[i], first - surface.points.begin()) << i;
+  }
 }
 
 // Every point of a plate of 400 x 400 modulo a period of one mesh size: one class of 160,801.
