@@ -77,21 +77,22 @@ Vec3 face_vector(std::span<const Index> nodes, std::span<const Vec3> positions) 
   return area_vector({corners.data(), nodes.size()});
 }
 
-// Corners as seen from the side from which the face at its original place runs counter-clockwise:
-// negative where it has turned over.
+// Corners as seen from the side to which `normal` points: negative where the face runs clockwise.
 CornerJacobians face_jacobians(ElementShape shape, std::span<const Index> nodes,
-                               std::span<const Vec3> positions, std::span<const Vec3> original,
-                               const std::optional<Vec3>& plane_normal) {
+                               std::span<const Vec3> positions, const Vec3& normal) {
   CornerJacobians result;
-  Vec3 normal = plane_normal ? *plane_normal : face_vector(nodes, positions).stableNormalized();
-  if (normal.dot(face_vector(nodes, original)) < 0) normal = -normal;
   const double factor = ideal_factor(shape);
   const std::size_t n = nodes.size();
+  std::array<Vec3, 4> edges;  // from corner k to the next
+  std::array<double, 4> lengths{};
   for (std::size_t k = 0; k < n; ++k) {
-    const Vec3& x = positions[nodes[k]];
-    const Vec3 next = positions[nodes[(k + 1) % n]] - x;
-    const Vec3 previous = positions[nodes[(k + n - 1) % n]] - x;
-    result.add(factor * ratio(next.cross(previous).dot(normal), next.norm() * previous.norm()));
+    edges[k] = positions[nodes[(k + 1) % n]] - positions[nodes[k]];
+    lengths[k] = edges[k].norm();
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::size_t previous = (k + n - 1) % n;
+    result.add(factor *
+               ratio(edges[previous].cross(edges[k]).dot(normal), lengths[k] * lengths[previous]));
   }
   return result;
 }
@@ -107,10 +108,28 @@ struct BlockView {
     const auto n = static_cast<std::size_t>(n_corners(block.type.shape));
     return block.element(element).first(n);
   }
-  CornerJacobians jacobians(Index element, std::span<const Vec3> positions) const {
-    const ElementShape shape = block.type.shape;
-    if (dimension(shape) == 3) return volume_jacobians(shape, corners(element), positions);
-    return face_jacobians(shape, corners(element), positions, original, plane_normal);
+  // At the original places, then at those moved to.
+  std::array<CornerJacobians, 2> jacobians(Index element) const {
+    return dimension(block.type.shape) == 3 ? of_cell(corners(element)) : of_face(corners(element));
+  }
+
+ private:
+  bool is_moved() const { return moved.data() != original.data(); }
+  std::array<CornerJacobians, 2> of_cell(std::span<const Index> nodes) const {
+    const CornerJacobians before = volume_jacobians(block.type.shape, nodes, original);
+    return {before, is_moved() ? volume_jacobians(block.type.shape, nodes, moved) : before};
+  }
+  // Both as seen from the side from which the face at its original place runs counter-clockwise.
+  std::array<CornerJacobians, 2> of_face(std::span<const Index> nodes) const {
+    const Vec3 vector = face_vector(nodes, original);
+    const auto normal = [&](const Vec3& own) {
+      const Vec3 n = plane_normal ? *plane_normal : own.stableNormalized();
+      return n.dot(vector) < 0 ? Vec3(-n) : n;
+    };
+    const auto before = face_jacobians(block.type.shape, nodes, original, normal(vector));
+    if (!is_moved()) return {before, before};
+    return {before, face_jacobians(block.type.shape, nodes, moved,
+                                   normal(plane_normal ? vector : face_vector(nodes, moved)))};
   }
 };
 
@@ -122,8 +141,7 @@ struct ElementResult {
 // A corner that has no sign in the input cannot lose it; an element whose corners point both ways
 // there counts as oriented like most of it.
 ElementResult compare(const BlockView& view, Index element) {
-  const CornerJacobians before = view.jacobians(element, view.original);
-  const CornerJacobians after = view.jacobians(element, view.moved);
+  const auto [before, after] = view.jacobians(element);
   const double orientation = before.sum() < 0 ? -1 : 1;
   ElementResult result{std::numeric_limits<double>::infinity(), false};
   for (std::size_t i = 0; i < before.n; ++i) {
