@@ -43,10 +43,14 @@ Surface joined(const Mesh& mesh, std::span<const SurfacePlan> plans,
 
 /// For each point of `part`, the point of `whole` that has its node.
 std::vector<Index> points_in(const Mesh& mesh, const Surface& part, const Surface& whole) {
+  std::vector<Index> points(part.points.size());
+  if (&part == &whole) {
+    std::iota(points.begin(), points.end(), Index{0});
+    return points;
+  }
   std::vector<Index> of_node(mesh.nodes.size(), -1);
   for (std::size_t i = 0; i < whole.nodes.size(); ++i)
     of_node[whole.nodes[i]] = whole.point_of_node[i];
-  std::vector<Index> points(part.points.size());
   for (std::size_t i = 0; i < part.nodes.size(); ++i)
     points[part.point_of_node[i]] = of_node[part.nodes[i]];
   return points;
@@ -148,6 +152,13 @@ PeriodicPartners partners_of(const Mesh& mesh, const Surface& surface, const Rou
   return periodic_partners(mesh, surface, Vec3(p[0], p[1], p[2]));
 }
 
+/// Is any point of the surface linked to another node?
+bool has_links(const PeriodicPartners& partners) {
+  for (std::size_t i = 0; i < partners.master.size(); ++i)
+    if (partners.master[i] != static_cast<Index>(i) || partners.unpaired[i] != 0) return true;
+  return false;
+}
+
 /// Do linked points move, so that the field has to be periodic?
 bool moves_images(std::span<const ClassedEffect> effects, const PeriodicPartners& partners) {
   std::vector<Index> n_points(partners.master.size(), 0);
@@ -186,7 +197,8 @@ PeriodicPartners no_partners(const Surface& surface) {
   return partners;
 }
 
-/// Points that have images get the normal that they have in common, on their own side.
+/// Points that have images get the normal that they have in common, on their own side. `surface`
+/// may be the whole itself.
 void take_shared_normals(const Surface& whole, const PeriodicPartners& partners,
                          const SurfacePlan& plan, Surface& surface) {
   const Surface shared = with_partner_normals(whole, partners);
@@ -208,17 +220,18 @@ FieldPlan field_plan(const Roughness& request, const Surface& whole, PeriodicPar
 FieldPlan prepare_field(const Mesh& mesh, RoughSurfaces& rough,
                         std::span<const std::size_t> members, TornLinks torn_links) {
   const std::size_t first = members.front();
-  const Surface whole =
-      members.size() == 1 ? rough.surfaces[first] : joined(mesh, rough.plans, members);
+  const Surface several = members.size() > 1 ? joined(mesh, rough.plans, members) : Surface();
+  const Surface& whole = members.size() > 1 ? several : rough.surfaces[first];
   for (const std::size_t s : members)
     rough.plans[s].field_point = points_in(mesh, rough.surfaces[s], whole);
 
   const PeriodicPartners linked = partners_of(mesh, whole, rough.plans[first].request);
-  const bool images_move = moves_images(effects(rough, members, linked), linked);
+  const bool is_linked = has_links(linked);
+  const bool images_move = is_linked && moves_images(effects(rough, members, linked), linked);
   for (const std::size_t s : members) fill_in_distance(rough.plans[s].request, linked, images_move);
   const Roughness& request = rough.plans[first].request;
   if (!is_periodic(*request.distance)) {
-    if (torn_links == TornLinks::refused)
+    if (is_linked && torn_links == TornLinks::refused)
       refuse_broken_links(effects(rough, members, linked), linked, *request.distance);
     return field_plan(request, whole, no_partners(whole));
   }

@@ -192,6 +192,18 @@ TEST(PeriodicRun, ADistanceThatBreaksTheLinksIsRefused) {
   EXPECT_EQ(message_of([&] { run(mesh, options); }), "no error");
 }
 
+// It makes no point an image of another.
+TEST(PeriodicRun, ALinkIntoTheInteriorIsRefusedWhereItsNodeMoves) {
+  Mesh mesh = test::strip(64, 2, 16);
+  RoughenOptions options = two_edges(2);
+  for (Roughness& surface : options.surfaces) surface.fixed.clear();
+  const Index on_edge = 5, inside = 65 + 5;
+  mesh.periodic_links = {{0, 1, 2, {}, {{inside, on_edge}}}};
+  EXPECT_NE(message_of([&] { run(mesh, options); }).find("not on this surface"), std::string::npos);
+  mesh.periodic_links.clear();
+  EXPECT_EQ(message_of([&] { run(mesh, options); }), "no error");
+}
+
 TEST(PeriodicRun, NeedsAPeriod) {
   Mesh mesh = test::strip(64, 2, 16);
   mesh.periodic_links.clear();
