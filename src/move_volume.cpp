@@ -192,16 +192,15 @@ std::vector<Vec3> VolumeMover::move(std::span<const Vec3> displacements) const {
     throw InputError(fmt::format("{} displacements for {} nodes that move; give one per node",
                                  displacements.size(), plan.moved_nodes.size()));
   require_finite(displacements);
-  std::vector<Vec3> shifts(plan.nodes.size(), Vec3::Zero());
+  std::vector<Vec3> moved(plan.nodes.size(), Vec3::Zero());  // by so much, at first
   for (std::size_t i = 0; i < displacements.size(); ++i)
-    shifts[plan.moved_nodes[i]] = displacements[i];
+    moved[plan.moved_nodes[i]] = displacements[i];
   if (plan.extension) {
     const std::vector<Vec3> interior = plan.extension->extend(displacements);
-    for (std::size_t i = 0; i < interior.size(); ++i) shifts[plan.free_nodes[i]] = interior[i];
-    plan.followers->fill(shifts);
+    for (std::size_t i = 0; i < interior.size(); ++i) moved[plan.free_nodes[i]] = interior[i];
+    plan.followers->fill(moved);
   }
-  std::vector<Vec3> moved = plan.nodes;
-  for (std::size_t node = 0; node < moved.size(); ++node) moved[node] += shifts[node];
+  for (std::size_t node = 0; node < moved.size(); ++node) moved[node] += plan.nodes[node];
   return moved;
 }
 
