@@ -34,41 +34,17 @@ PhysicalGroup require_group(const Mesh& mesh, const Surface& surface, const std:
 
 // ---- Borders: where one face, or one line of a curve, ends ----
 
-Faces faces_of(const Surface& surface) {
-  return {.dimension = surface.dimension,
-          .plane_normal = surface.plane_normal,
-          .offsets = surface.face_offsets,
-          .corners = surface.face_points,
-          .tags = surface.face_tags,
-          .file_order = {}};
-}
-
-std::vector<Simplex> border_edges(const Surface& surface) {
-  const EdgeTable edges = make_edges(faces_of(surface), surface.n_points());
-  std::vector<Simplex> border;
-  for (Index e = 0; e < edges.size(); ++e)
-    if (edges.edge(e).size() == 1)
-      border.emplace_back(
-          std::array{surface.points[edges.points[e][0]], surface.points[edges.points[e][1]]});
-  return border;
-}
-
-std::vector<Simplex> end_points(const Surface& curve) {
-  std::vector<Index> n_lines(curve.points.size(), 0);
-  for (const Index point : curve.face_points) ++n_lines[point];
-  std::vector<Simplex> ends;
-  for (std::size_t i = 0; i < n_lines.size(); ++i)
-    if (n_lines[i] == 1) ends.emplace_back(std::span(&curve.points[i], 1));
-  return ends;
-}
-
 std::vector<Simplex> border_of(const Surface& surface) {
-  std::vector<Simplex> border =
-      surface.dimension == 1 ? end_points(surface) : border_edges(surface);
-  if (border.empty())
+  if (surface.border_edges.empty())
     throw InputError(
         "fade: the surface is closed and has no border to fade from; name a physical group to fade "
         "from, or leave the fade out");
+  const auto n_corners = static_cast<std::size_t>(surface.dimension);
+  std::vector<Simplex> border;
+  for (const auto& [i, j] : surface.border_edges) {
+    const std::array ends = {surface.points[i], surface.points[j]};
+    border.emplace_back(std::span(ends).first(n_corners));
+  }
   return border;
 }
 

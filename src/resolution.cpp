@@ -2,10 +2,11 @@
 #include "roughmesh/resolution.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -16,6 +17,7 @@
 namespace roughmesh {
 namespace {
 
+constexpr std::size_t grain = 4096;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double largest_h_over_l = 1 / sizes_per_length;
 constexpr double largest_share_above_nyquist = 0.05;
@@ -85,7 +87,6 @@ FaceSums line_sums(Index i, Index j, const Surface& surface, const Correlation& 
 
 // Quadrangles count as the two triangles of a fan.
 FaceSums face_sums(const Surface& surface, const Correlation& correlation) {
-  constexpr std::size_t grain = 4096;
   const std::size_t n = surface.face_tags.size();
   std::vector<FaceSums> parts((n + grain - 1) / grain);
   detail::parallel_for(n, grain, [&](std::size_t begin, std::size_t end) {
@@ -113,21 +114,8 @@ struct FieldSize {
 };
 
 double half_border(const Surface& surface, const Correlation& correlation) {
-  if (surface.n_border_edges == 0) return 0;
-  std::vector<std::pair<Index, Index>> edges;
-  for (Index f = 0; f < surface.n_faces(); ++f) {
-    const auto face = surface.face(f);
-    for (std::size_t k = 0; k < face.size(); ++k)
-      edges.push_back(std::minmax(face[k], face[(k + 1) % face.size()]));
-  }
-  std::sort(edges.begin(), edges.end());
   double sum = 0;
-  for (auto first = edges.begin(); first != edges.end();) {
-    const auto next = std::find_if(first, edges.end(), [&](const auto& e) { return e != *first; });
-    const auto& [i, j] = *first;
-    if (next - first == 1) sum += std::sqrt(2 * (1 - correlation(i, j)));
-    first = next;
-  }
+  for (const auto& [i, j] : surface.border_edges) sum += std::sqrt(2 * (1 - correlation(i, j)));
   return sum / 2;
 }
 
@@ -164,38 +152,60 @@ double expected_max_height(const FieldSize& size, double n_points) {
 
 // Points with a face that leans away from their normal by more than 30 degrees stand on a sharp
 // edge or corner, which has no radius of curvature.
-std::vector<char> points_on_sharp_edges(const Surface& surface) {
+std::vector<std::uint8_t> points_on_sharp_edges(const Surface& surface) {
   const double least_cosine = std::cos(std::numbers::pi / 6);
-  std::vector<char> is_sharp(surface.points.size(), 0);
-  std::vector<Vec3> corners;
-  for (Index f = 0; f < surface.n_faces(); ++f) {
-    corners.clear();
-    for (const Index i : surface.face(f)) corners.push_back(surface.points[i]);
-    const Vec3 normal = detail::face_vector(corners, surface.plane_normal);
-    for (const Index i : surface.face(f))
-      if (surface.normals[i].dot(normal) < least_cosine * normal.norm()) is_sharp[i] = 1;
-  }
+  std::vector<std::uint8_t> is_sharp(surface.points.size(), 0);
+  detail::parallel_for(surface.face_tags.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      const auto face = surface.face(static_cast<Index>(f));
+      const Vec3 normal =
+          detail::face_vector(detail::gather(face, surface.points).span(), surface.plane_normal);
+      for (const Index i : face)
+        if (surface.normals[i].dot(normal) < least_cosine * normal.norm())
+          std::atomic_ref(is_sharp[i]).store(1, std::memory_order_relaxed);
+    }
+  });
   return is_sharp;
+}
+
+struct Curvature {
+  double smooth = -1;  ///< over the edges without a sharp end
+  double any = 0;      ///< over all edges
+
+  void take(const Curvature& other) {
+    smooth = std::max(smooth, other.smooth);
+    any = std::max(any, other.any);
+  }
+};
+
+Curvature curvature_of_face(const Surface& surface, Index number,
+                            const std::vector<std::uint8_t>& is_sharp) {
+  constexpr double flat = 1e-9;  // rounding of the normals of a plane
+  Curvature result;
+  const auto face = surface.face(number);
+  for (std::size_t k = 0; k < face.size(); ++k) {
+    const Index i = face[k], j = face[(k + 1) % face.size()];
+    const double turn = (surface.normals[i] - surface.normals[j]).norm();
+    const double curvature =
+        turn > flat ? turn / (surface.points[i] - surface.points[j]).norm() : 0;
+    result.take({is_sharp[i] || is_sharp[j] ? -1 : curvature, curvature});
+  }
+  return result;
 }
 
 // Largest |n_i - n_j| / |x_i - x_j| over the edges without a sharp end; over all edges if none is
 // left, as on an icosahedron. Exact on a sphere whose normals are.
 double largest_curvature(const Surface& surface) {
-  constexpr double flat = 1e-9;  // rounding of the normals of a plane
-  const std::vector<char> is_sharp = points_on_sharp_edges(surface);
-  double smooth = -1, any = 0;
-  for (Index f = 0; f < surface.n_faces(); ++f) {
-    const auto face = surface.face(f);
-    for (std::size_t k = 0; k < face.size(); ++k) {
-      const Index i = face[k], j = face[(k + 1) % face.size()];
-      const double turn = (surface.normals[i] - surface.normals[j]).norm();
-      const double curvature =
-          turn > flat ? turn / (surface.points[i] - surface.points[j]).norm() : 0;
-      any = std::max(any, curvature);
-      if (!is_sharp[i] && !is_sharp[j]) smooth = std::max(smooth, curvature);
-    }
-  }
-  return smooth >= 0 ? smooth : any;
+  const std::vector<std::uint8_t> is_sharp = points_on_sharp_edges(surface);
+  const std::size_t n = surface.face_tags.size();
+  std::vector<Curvature> parts((n + grain - 1) / grain);
+  detail::parallel_for(n, grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f)
+      parts[begin / grain].take(curvature_of_face(surface, static_cast<Index>(f), is_sharp));
+  });
+  Curvature largest;
+  for (const Curvature& part : parts) largest.take(part);
+  return largest.smooth >= 0 ? largest.smooth : largest.any;
 }
 
 // ---- Warnings ----

@@ -42,10 +42,11 @@ Surface select_surface(const Mesh& mesh, const SurfaceOptions& options) {
   check_options(options);
   detail::ChosenFaces chosen = detail::choose_faces(mesh, options.groups);
   detail::WeldedPoints welded = detail::weld_points(mesh, chosen.faces.corners);
+  const auto n_points = static_cast<Index>(welded.points.size());
   auto [faces, n_elements, n_duplicates] =
-      detail::canonical_faces(chosen.faces, welded.point_of_node);
-  const detail::EdgeTable edges =
-      detail::make_edges(faces, static_cast<Index>(welded.points.size()));
+      detail::canonical_faces(chosen.faces, welded.point_of_node, n_points);
+  chosen.faces = {};  // a large mesh needs the memory
+  const detail::EdgeTable edges = detail::make_edges(faces.view(), n_points);
 
   Surface surface;
   surface.dimension = faces.dimension;

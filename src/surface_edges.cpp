@@ -2,6 +2,10 @@
 #include "surface_edges.hpp"
 
 #include <algorithm>
+#include <numeric>
+#include <span>
+
+#include "parallel.hpp"
 
 namespace roughmesh::detail {
 namespace {
@@ -18,7 +22,7 @@ struct FaceSide {
 };
 
 template <class Visit>
-void for_each_side(const Faces& faces, Visit&& visit) {
+void for_each_side(const FaceView& faces, Visit&& visit) {
   for (Index f = 0; f < faces.size(); ++f) {
     const auto corners = faces.face(f);
     for (std::size_t k = 0; k < corners.size(); ++k) {
@@ -30,7 +34,7 @@ void for_each_side(const Faces& faces, Visit&& visit) {
 
 // Two lines of a consistent chain meet at a point that one leaves and the other reaches, just as
 // two faces meet at an edge that one runs along to and the other fro.
-bool is_forward(const Faces& faces, Index face, const FaceSide& side) {
+bool is_forward(const FaceView& faces, Index face, const FaceSide& side) {
   return faces.dimension == 1 ? side.corner == faces.offsets[face] : side.from < side.to;
 }
 
@@ -40,7 +44,7 @@ struct Buckets {
   std::vector<LooseSide> sides;
 };
 
-Buckets make_buckets(const Faces& faces, Index n_points) {
+Buckets make_buckets(const FaceView& faces, Index n_points) {
   Buckets buckets;
   buckets.offsets.assign(static_cast<std::size_t>(n_points) + 1, 0);
   for_each_side(faces, [&](Index, const FaceSide& side) {
@@ -57,30 +61,57 @@ Buckets make_buckets(const Faces& faces, Index n_points) {
   return buckets;
 }
 
-}  // namespace
-
-EdgeTable make_edges(const Faces& faces, Index n_points) {
-  Buckets buckets = make_buckets(faces, n_points);
-  EdgeTable table;
-  table.sides.reserve(faces.corners.size());
-  table.edge_of_corner.resize(faces.corners.size());
-  for (Index point = 0; point < n_points; ++point) {
-    const auto begin = buckets.sides.begin() + buckets.offsets[point];
-    const auto end = buckets.sides.begin() + buckets.offsets[point + 1];
-    std::sort(begin, end, [](const LooseSide& a, const LooseSide& b) {
+// Sorts the sides of points [begin, end) and returns how many edges they are.
+Index sort_sides(std::size_t begin, std::size_t end, Buckets& buckets) {
+  Index n_edges = 0;
+  for (std::size_t point = begin; point < end; ++point) {
+    const std::span sides(buckets.sides.begin() + buckets.offsets[point],
+                          buckets.sides.begin() + buckets.offsets[point + 1]);
+    std::sort(sides.begin(), sides.end(), [](const LooseSide& a, const LooseSide& b) {
       return a.other_point != b.other_point ? a.other_point < b.other_point : a.corner < b.corner;
     });
-    for (auto it = begin; it != end; ++it) {
-      const bool is_new = it == begin || it->other_point != (it - 1)->other_point;
-      if (is_new) {
-        table.points.push_back({point, it->other_point});
-        table.offsets.push_back(table.offsets.back());
+    for (std::size_t k = 0; k < sides.size(); ++k)
+      n_edges += k == 0 || sides[k].other_point != sides[k - 1].other_point;
+  }
+  return n_edges;
+}
+
+// Writes the edges of points [begin, end) from this one on.
+void write_edges(std::size_t begin, std::size_t end, const Buckets& buckets, Index edge,
+                 EdgeTable& table) {
+  for (std::size_t point = begin; point < end; ++point) {
+    const Index first = buckets.offsets[point], last = buckets.offsets[point + 1];
+    for (Index k = first; k < last; ++k) {
+      const LooseSide& side = buckets.sides[k];
+      if (k == first || side.other_point != buckets.sides[k - 1].other_point) {
+        table.points[edge] = {static_cast<Index>(point), side.other_point};
+        table.offsets[edge++] = k;
       }
-      table.sides.push_back(it->side);
-      ++table.offsets.back();
-      table.edge_of_corner[it->corner] = table.size() - 1;
+      table.sides[k] = side.side;
+      table.edge_of_corner[side.corner] = edge - 1;
     }
   }
+}
+
+}  // namespace
+
+EdgeTable make_edges(const FaceView& faces, Index n_points) {
+  constexpr std::size_t grain = 4096;
+  const auto n = static_cast<std::size_t>(n_points);
+  Buckets buckets = make_buckets(faces, n_points);
+  std::vector<Index> firsts(n / grain + 2, 0);  // edge of each range of points
+  parallel_for(n, grain, [&](std::size_t begin, std::size_t end) {
+    firsts[begin / grain + 1] = sort_sides(begin, end, buckets);
+  });
+  std::partial_sum(firsts.begin(), firsts.end(), firsts.begin());
+  EdgeTable table;
+  table.points.resize(static_cast<std::size_t>(firsts.back()));
+  table.offsets.assign(table.points.size() + 1, static_cast<Index>(buckets.sides.size()));
+  table.sides.resize(buckets.sides.size());
+  table.edge_of_corner.resize(faces.corners.size());
+  parallel_for(n, grain, [&](std::size_t begin, std::size_t end) {
+    write_edges(begin, end, buckets, firsts[begin / grain], table);
+  });
   return table;
 }
 

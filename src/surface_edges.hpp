@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "roughmesh/surface.hpp"
+
 #include "surface_faces.hpp"
 
 namespace roughmesh::detail {
@@ -30,6 +32,6 @@ struct EdgeTable {
   }
 };
 
-EdgeTable make_edges(const Faces& faces, Index n_points);
+EdgeTable make_edges(const FaceView& faces, Index n_points);
 
 }  // namespace roughmesh::detail

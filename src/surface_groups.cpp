@@ -180,7 +180,20 @@ void add_element(const ElementType& type, std::span<const Index> nodes, Tag tag,
   }
 }
 
+void reserve(const Mesh& mesh, const Choice& choice, Faces& faces) {
+  std::size_t n_faces = 0, n_corners = 0;
+  for (const ElementBlock& block : mesh.blocks) {
+    if (!is_chosen(block, choice)) continue;
+    for (const std::vector<int>& facet : facets(block.type)) {
+      n_faces += block.tags.size();
+      n_corners += block.tags.size() * facet.size();
+    }
+  }
+  faces.reserve(n_faces, n_corners);
+}
+
 void add_elements(const Mesh& mesh, const Choice& choice, Faces& faces) {
+  reserve(mesh, choice, faces);
   Index order = 0;
   for (const ElementBlock& block : mesh.blocks) {
     if (!is_chosen(block, choice)) continue;

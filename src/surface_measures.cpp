@@ -9,6 +9,7 @@
 
 #include "corner_normals.hpp"
 #include "messages.hpp"
+#include "parallel.hpp"
 #include "polygon.hpp"
 
 namespace roughmesh::detail {
@@ -35,8 +36,19 @@ struct VectorSum {
   bool has_direction() const { return sum.norm() > least_sum * magnitude; }
 };
 
+constexpr std::size_t grain = 4096;
+
 Vec3 vector_of_face(const Surface& surface, Index face) {
   return face_vector(gather(surface.face(face), surface.points).span(), surface.plane_normal);
+}
+
+std::vector<double> face_areas(const Surface& surface) {
+  std::vector<double> areas(surface.face_tags.size());
+  parallel_for(areas.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f)
+      areas[f] = face_area(gather(surface.face(static_cast<Index>(f)), surface.points).span());
+  });
+  return areas;
 }
 
 // Normal of each line over its length (docs/math.md, eq. 35).
@@ -51,16 +63,35 @@ std::vector<VectorSum> curve_sums(const Surface& surface) {
   return sums;
 }
 
+VectorSum max_normal(const Surface& surface, std::span<const Index> face, std::size_t corner) {
+  const std::size_t n = face.size();
+  const Vec3& x = surface.points[face[corner]];
+  VectorSum normal;
+  normal.add(corner_normal(surface.points[face[(corner + 1) % n]] - x,
+                           surface.points[face[(corner + n - 1) % n]] - x));
+  return normal;
+}
+
+// Faces in portions: the normals of their corners on several threads, then the sums in the order of
+// the faces, so that they are the same on any number of threads.
 std::vector<VectorSum> max_sums(const Surface& surface) {
+  constexpr std::size_t portion = 1 << 15;
   std::vector<VectorSum> sums(surface.points.size());
-  for (Index f = 0; f < surface.n_faces(); ++f) {
-    const auto face = surface.face(f);
-    const std::size_t n = face.size();
-    for (std::size_t k = 0; k < n; ++k) {
-      const Vec3& x = surface.points[face[k]];
-      sums[face[k]].add(corner_normal(surface.points[face[(k + 1) % n]] - x,
-                                      surface.points[face[(k + n - 1) % n]] - x));
-    }
+  std::vector<VectorSum> corners;
+  for (std::size_t first = 0; first < surface.face_tags.size(); first += portion) {
+    const std::size_t n_faces = std::min(portion, surface.face_tags.size() - first);
+    const auto offsets = std::span(surface.face_offsets).subspan(first, n_faces + 1);
+    const auto points =
+        std::span(surface.face_points).subspan(offsets.front(), offsets.back() - offsets.front());
+    corners.resize(points.size());
+    parallel_for(n_faces, grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t f = begin; f < end; ++f) {
+        const auto face = surface.face(static_cast<Index>(first + f));
+        for (std::size_t k = 0; k < face.size(); ++k)
+          corners[offsets[f] - offsets.front() + k] = max_normal(surface, face, k);
+      }
+    });
+    for (std::size_t k = 0; k < points.size(); ++k) sums[points[k]].add(corners[k]);
   }
   return sums;
 }
@@ -127,33 +158,35 @@ double longest_edge(const Corners& corners) {
 
 // Area vectors; zero where only round-off would decide the direction.
 std::vector<Vec3> face_vectors(const Surface& surface) {
-  std::vector<Vec3> vectors;
-  vectors.reserve(surface.face_tags.size());
-  for (Index f = 0; f < surface.n_faces(); ++f) {
-    const Corners corners = gather(surface.face(f), surface.points);
-    const Vec3 vector = vector_of_face(surface, f);
-    const double longest = longest_edge(corners);
-    const double least = surface.dimension == 1 ? 0 : least_area * longest * longest;
-    vectors.push_back(vector.norm() > least ? vector : Vec3::Zero());
-  }
+  std::vector<Vec3> vectors(surface.face_tags.size());
+  parallel_for(vectors.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      const auto face = static_cast<Index>(f);
+      const Vec3 vector = vector_of_face(surface, face);
+      const double longest = longest_edge(gather(surface.face(face), surface.points));
+      const double least = surface.dimension == 1 ? 0 : least_area * longest * longest;
+      vectors[f] = vector.norm() > least ? vector : Vec3::Zero();
+    }
+  });
   return vectors;
 }
 
 bool is_sharp(const Vec3& a, const Vec3& b, double sharp_angle) {
   if (a.isZero(0) || b.isZero(0)) return false;
-  return std::atan2(a.cross(b).norm(), a.dot(b)) > sharp_angle;
+  const double sine = a.cross(b).norm(), cosine = a.dot(b);
+  if (sine < sharp_angle / 2 * cosine) return false;  // most edges: an angle is below its tangent
+  return std::atan2(sine, cosine) > sharp_angle;
 }
 
 std::vector<double> edge_lengths(const EdgeTable& edges, const Surface& surface) {
-  std::vector<double> lengths;
-  if (surface.dimension == 1) {
-    for (Index f = 0; f < surface.n_faces(); ++f)
-      lengths.push_back(face_area(gather(surface.face(f), surface.points).span()));
-    return lengths;
-  }
-  lengths.reserve(edges.points.size());
-  for (const auto& [a, b] : edges.points)
-    lengths.push_back((surface.points[b] - surface.points[a]).norm());
+  if (surface.dimension == 1) return face_areas(surface);
+  std::vector<double> lengths(edges.points.size());
+  parallel_for(lengths.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t e = begin; e < end; ++e) {
+      const auto& [a, b] = edges.points[e];
+      lengths[e] = (surface.points[b] - surface.points[a]).norm();
+    }
+  });
   return lengths;
 }
 
@@ -164,16 +197,35 @@ MeshSize mesh_size(std::vector<double> lengths) {
           *std::max_element(middle, lengths.end())};
 }
 
+struct SpecialEdges {
+  std::vector<std::array<Index, 2>> border;
+  Index n_nonmanifold = 0, n_sharp = 0;
+};
+
+SpecialEdges find_special_edges(const EdgeTable& edges, std::span<const Vec3> vectors,
+                                double sharp_angle, std::size_t begin, std::size_t end) {
+  SpecialEdges special;
+  for (std::size_t e = begin; e < end; ++e) {
+    const auto sides = edges.edge(static_cast<Index>(e));
+    if (sides.size() == 1) special.border.push_back(edges.points[e]);
+    special.n_nonmanifold += sides.size() > 2;
+    special.n_sharp +=
+        sides.size() == 2 && is_sharp(vectors[sides[0].face], vectors[sides[1].face], sharp_angle);
+  }
+  return special;
+}
+
 }  // namespace
 
 void measure_areas(Surface& surface) {
+  const std::vector<double> of_faces = face_areas(surface);
   surface.areas.assign(surface.points.size(), 0);
   surface.area = 0;
   for (Index f = 0; f < surface.n_faces(); ++f) {
     const auto face = surface.face(f);
-    const double area = face_area(gather(face, surface.points).span());
-    surface.area += area;
-    for (const Index point : face) surface.areas[point] += area / static_cast<double>(face.size());
+    surface.area += of_faces[f];
+    for (const Index point : face)
+      surface.areas[point] += of_faces[f] / static_cast<double>(face.size());
   }
 }
 
@@ -194,15 +246,17 @@ void measure_shared_normals(Surface& surface, std::span<const Index> sharer) {
 
 void measure_edges(const EdgeTable& edges, double sharp_angle, Surface& surface) {
   const std::vector<Vec3> vectors = face_vectors(surface);
-  for (Index e = 0; e < edges.size(); ++e) {
-    const auto sides = edges.edge(e);
-    if (sides.size() == 1)
-      ++surface.n_border_edges;
-    else if (sides.size() > 2)
-      ++surface.n_nonmanifold_edges;
-    else if (is_sharp(vectors[sides[0].face], vectors[sides[1].face], sharp_angle))
-      ++surface.n_sharp_edges;
+  const auto n = static_cast<std::size_t>(edges.size());
+  std::vector<SpecialEdges> parts((n + grain - 1) / grain);
+  parallel_for(n, grain, [&](std::size_t begin, std::size_t end) {
+    parts[begin / grain] = find_special_edges(edges, vectors, sharp_angle, begin, end);
+  });
+  for (const SpecialEdges& part : parts) {
+    surface.border_edges.insert(surface.border_edges.end(), part.border.begin(), part.border.end());
+    surface.n_nonmanifold_edges += part.n_nonmanifold;
+    surface.n_sharp_edges += part.n_sharp;
   }
+  surface.n_border_edges = static_cast<Index>(surface.border_edges.size());
   surface.mesh_size = mesh_size(edge_lengths(edges, surface));
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 
 #include "disjoint_sets.hpp"
 #include "messages.hpp"
+#include "parallel.hpp"
 #include "polygon.hpp"
 #include "volume_faces.hpp"
 
@@ -79,12 +81,39 @@ void turn_patches(const std::vector<std::uint8_t>& turn, Patches& patches) {
     patches.turned[face] ^= turn[patches.of_face[face]];
 }
 
+// Sums over the faces of each patch, `add(face, sum)` adding one; on several threads, in ranges
+// that are long enough for all sums together to be fewer than the faces.
+template <class Sum, class Add>
+std::vector<Sum> over_patches(const Patches& patches, Add&& add) {
+  constexpr std::size_t least_grain = 8192;
+  const std::size_t n_faces = patches.of_face.size(), n = static_cast<std::size_t>(patches.n);
+  const std::size_t grain = std::max(least_grain, 4 * n);
+  std::vector<std::vector<Sum>> parts((n_faces + grain - 1) / grain);
+  parallel_for(n_faces, grain, [&](std::size_t begin, std::size_t end) {
+    std::vector<Sum>& part = parts[begin / grain];
+    part.resize(n);
+    for (std::size_t f = begin; f < end; ++f) add(static_cast<Index>(f), part[patches.of_face[f]]);
+  });
+  std::vector<Sum> total(n);
+  for (const std::vector<Sum>& part : parts)
+    for (std::size_t patch = 0; patch < n; ++patch) total[patch].add(part[patch]);
+  return total;
+}
+
 // How a patch lies in the file.
 struct FileOrientation {
   double area = 0;
-  double as_given = 0;  // area that is not turned, minus area that is
-  Index first = -1;     // face
+  double as_given = 0;                              // area that is not turned, minus area that is
+  Index first = -1;                                 // face
+  Index order = std::numeric_limits<Index>::max();  // of it in the file
 
+  void add(const FileOrientation& other) {
+    area += other.area;
+    as_given += other.as_given;
+    if (other.order >= order) return;
+    first = other.first;
+    order = other.order;
+  }
   bool is_turned(const Patches& patches) const {
     constexpr double tie = 1e-9;  // halves of equal area, with the round-off of their sums
     return std::abs(as_given) > tie * area ? as_given < 0 : patches.turned[first] != 0;
@@ -94,15 +123,11 @@ struct FileOrientation {
 // Each patch as most of its area in the file has it: a few faces the wrong way round do not count,
 // wherever they stand in the file.
 void keep_orientation_of_file(const WeldedPoints& welded, const Faces& faces, Patches& patches) {
-  std::vector<FileOrientation> in_file(static_cast<std::size_t>(patches.n));
-  for (Index face = 0; face < faces.size(); ++face) {
-    FileOrientation& patch = in_file[patches.of_face[face]];
-    const double area = face_area(gather(faces.face(face), welded.points).span());
-    patch.area += area;
-    patch.as_given += patches.turned[face] ? -area : area;
-    if (patch.first < 0 || faces.file_order[face] < faces.file_order[patch.first])
-      patch.first = face;
-  }
+  const auto in_file =
+      over_patches<FileOrientation>(patches, [&](Index face, FileOrientation& sum) {
+        const double area = face_area(gather(faces.face(face), welded.points).span());
+        sum.add({area, patches.turned[face] ? -area : area, face, faces.file_order[face]});
+      });
   std::vector<std::uint8_t> turn(in_file.size());
   for (std::size_t patch = 0; patch < turn.size(); ++patch)
     turn[patch] = in_file[patch].is_turned(patches);
@@ -120,6 +145,7 @@ std::vector<std::uint8_t> closed_patches(const EdgeTable& edges, const Patches& 
   std::vector<std::uint8_t> closed(static_cast<std::size_t>(patches.n), 1);
   std::vector<PatchSide> sides;
   for (Index e = 0; e < edges.size(); ++e) {
+    if (edges.edge(e).size() == 2) continue;  // within one patch, whose faces agree
     sides.clear();
     for (const Side& side : edges.edge(e)) {
       const bool against = side.forward == (patches.turned[side.face] != 0);
@@ -137,25 +163,35 @@ std::vector<std::uint8_t> closed_patches(const EdgeTable& edges, const Patches& 
   return closed;
 }
 
+struct Centre {
+  Vec3 sum = Vec3::Zero();
+  double n = 0;
+
+  void add(const Centre& other) {
+    sum += other.sum;
+    n += other.n;
+  }
+};
+
+struct Volume {
+  double value = 0;
+
+  void add(const Volume& other) { value += other.value; }
+};
+
 // Volume inside each patch, from cones about the patch's own centre so that a body far from the
 // origin keeps its digits.
-std::vector<double> patch_volumes(const WeldedPoints& welded, const Faces& faces,
+std::vector<Volume> patch_volumes(const WeldedPoints& welded, const Faces& faces,
                                   const Patches& patches) {
-  const auto n = static_cast<std::size_t>(patches.n);
-  std::vector<Vec3> centres(n, Vec3::Zero());
-  std::vector<double> counts(n, 0), volumes(n, 0);
-  for (Index face = 0; face < faces.size(); ++face) {
-    centres[patches.of_face[face]] += centroid(welded, faces.face(face));
-    counts[patches.of_face[face]] += 1;
-  }
-  for (std::size_t patch = 0; patch < n; ++patch) centres[patch] /= counts[patch];
-  for (Index face = 0; face < faces.size(); ++face) {
-    const Index patch = patches.of_face[face];
+  const auto centres = over_patches<Centre>(patches, [&](Index face, Centre& centre) {
+    centre.add({centroid(welded, faces.face(face)), 1});
+  });
+  return over_patches<Volume>(patches, [&](Index face, Volume& volume) {
+    const Centre& centre = centres[patches.of_face[face]];
     const Corners corners = gather(faces.face(face), welded.points);
-    const double volume = cone_volume(corners.span(), centres[patch], faces.plane_normal);
-    volumes[patch] += patches.turned[face] ? -volume : volume;
-  }
-  return volumes;
+    const double cone = cone_volume(corners.span(), centre.sum / centre.n, faces.plane_normal);
+    volume.value += patches.turned[face] ? -cone : cone;
+  });
 }
 
 // Entities of the elements (of a curve: of the plane) on either side of a face, seen along its
@@ -215,12 +251,13 @@ void note_neighbours(const Mesh& mesh, const ElementBlock& block, Index element,
 // How many more faces of each patch look where their volumes want them to than the other way.
 std::vector<std::int64_t> votes_of_volumes(const Mesh& mesh, const WeldedPoints& welded,
                                            const Faces& faces, const Patches& patches) {
+  std::vector<std::int64_t> votes(static_cast<std::size_t>(patches.n), 0);
+  if (n_elements(mesh, faces.dimension + 1) == 0) return votes;
   const FaceLookup lookup(faces.offsets, faces.corners);
   std::vector<Neighbours> neighbours(faces.tags.size());
   for (const ElementBlock& block : mesh.blocks)
     for (Index e = 0; dimension(block.type.shape) == faces.dimension + 1 && e < block.size(); ++e)
       note_neighbours(mesh, block, e, welded, lookup, faces, neighbours);
-  std::vector<std::int64_t> votes(static_cast<std::size_t>(patches.n), 0);
   for (std::size_t face = 0; face < neighbours.size(); ++face) {
     const int vote = neighbours[face].vote();
     votes[patches.of_face[face]] += patches.turned[face] ? -vote : vote;
@@ -231,20 +268,20 @@ std::vector<std::int64_t> votes_of_volumes(const Mesh& mesh, const WeldedPoints&
 void look_outward(const Mesh& mesh, const WeldedPoints& welded, const Faces& faces,
                   const EdgeTable& edges, Patches& patches) {
   const std::vector<std::uint8_t> closed = closed_patches(edges, patches);
-  const std::vector<double> volumes = patch_volumes(welded, faces, patches);
+  const std::vector<Volume> volumes = patch_volumes(welded, faces, patches);
   std::vector<std::int64_t> votes(closed.size(), 0);
   if (std::find(closed.begin(), closed.end(), 0) != closed.end())
     votes = votes_of_volumes(mesh, welded, faces, patches);
   std::vector<std::uint8_t> turn(closed.size());
   for (std::size_t patch = 0; patch < turn.size(); ++patch)
-    turn[patch] = closed[patch] ? volumes[patch] < 0 : votes[patch] < 0;
+    turn[patch] = closed[patch] ? volumes[patch].value < 0 : votes[patch] < 0;
   turn_patches(turn, patches);
 }
 
 // Patches that touch along edges of three and more faces are one piece.
 Index count_pieces(const EdgeTable& edges, const Patches& patches) {
   DisjointSets pieces(static_cast<std::size_t>(patches.n));
-  for (Index e = 0; e < edges.size(); ++e)
+  for (Index e = 0; patches.n > 1 && e < edges.size(); ++e)
     for (const Side& side : edges.edge(e))
       pieces.unite(patches.of_face[edges.edge(e).front().face], patches.of_face[side.face]);
   Index n_pieces = 0;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -14,9 +15,11 @@
 namespace roughmesh::detail {
 namespace {
 
-using Cell = std::array<std::int64_t, 3>;
-
+constexpr std::size_t grain = 4096;
 constexpr double cells_per_diagonal = 1e9;
+
+// Numbers of a cell along the axes, of up to 31 bits each: those of x and y, then that of z.
+using Cell = std::array<std::uint64_t, 2>;
 
 // Positions relative to the bounding box of the surface, in steps of 1e-9 of its diagonal.
 struct Grid {
@@ -28,10 +31,10 @@ struct Grid {
     return (steps.array() > -1).all() && (steps.array() < cells_per_diagonal + 1).all();
   }
   Cell cell(const Vec3& x) const {
-    Cell cell;
-    for (int axis = 0; axis < 3; ++axis)
-      cell[axis] = static_cast<std::int64_t>(std::floor((x[axis] - corner[axis]) / step + 0.5));
-    return cell;
+    const auto along = [&](int axis) {
+      return static_cast<std::uint64_t>(std::floor((x[axis] - corner[axis]) / step + 1.5));
+    };
+    return {along(0) << 32 | along(1), along(2)};
   }
 };
 
@@ -77,37 +80,34 @@ struct PlacedNode {
 // Ties inside a cell go by exact position, so that the first of a cell does not depend on numbers.
 std::vector<PlacedNode> sorted_by_position(const Mesh& mesh, std::span<const Index> nodes,
                                            const Grid& grid) {
-  std::vector<PlacedNode> placed;
-  placed.reserve(nodes.size());
-  for (const Index node : nodes) placed.push_back({grid.cell(mesh.nodes[node]), node});
-  std::sort(placed.begin(), placed.end(), [&](const PlacedNode& a, const PlacedNode& b) {
+  std::vector<PlacedNode> placed(nodes.size());
+  parallel_for(placed.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      placed[i] = {grid.cell(mesh.nodes[nodes[i]]), nodes[i]};
+  });
+  parallel_sort(std::span(placed), [&](const PlacedNode& a, const PlacedNode& b) {
     if (a.cell != b.cell) return a.cell < b.cell;
-    return lexicographically_less(mesh.nodes[a.node], mesh.nodes[b.node]);
+    const Vec3 &x = mesh.nodes[a.node], &y = mesh.nodes[b.node];
+    return x != y ? lexicographically_less(x, y) : a.node < b.node;
   });
   return placed;
 }
 
-// For every node of the mesh, the place of its cell in this ascending list or -1.
-std::vector<Index> find_cells(const Mesh& mesh, const Grid& grid, std::span<const Cell> cells) {
-  std::vector<Index> found(mesh.nodes.size(), -1);
-  constexpr std::size_t grain = 4096;
-  parallel_for(mesh.nodes.size(), grain, [&](std::size_t begin, std::size_t end) {
+// Nodes that are not used, in cells of those that are.
+Index count_coincident_nodes(const Mesh& mesh, const std::vector<std::uint8_t>& used,
+                             const Grid& grid, std::span<const PlacedNode> placed) {
+  std::vector<Index> counts((used.size() + grain - 1) / grain, 0);
+  parallel_for(used.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t node = begin; node < end; ++node) {
-      if (!grid.reaches(mesh.nodes[node])) continue;
+      if (used[node] || !grid.reaches(mesh.nodes[node])) continue;
       const Cell cell = grid.cell(mesh.nodes[node]);
-      const auto at = std::lower_bound(cells.begin(), cells.end(), cell);
-      if (at != cells.end() && *at == cell) found[node] = static_cast<Index>(at - cells.begin());
+      const auto at =
+          std::lower_bound(placed.begin(), placed.end(), cell,
+                           [](const PlacedNode& a, const Cell& b) { return a.cell < b; });
+      counts[begin / grain] += at != placed.end() && at->cell == cell;
     }
   });
-  return found;
-}
-
-void leave_coincident_nodes(const std::vector<std::uint8_t>& used, WeldedPoints& welded) {
-  for (std::size_t node = 0; node < used.size(); ++node) {
-    if (used[node] || welded.point_of_node[node] < 0) continue;
-    welded.point_of_node[node] = -1;
-    ++welded.n_coincident_nodes;
-  }
+  return std::accumulate(counts.begin(), counts.end(), Index{0});
 }
 
 }  // namespace
@@ -116,15 +116,17 @@ WeldedPoints weld_points(const Mesh& mesh, std::span<const Index> face_nodes) {
   const std::vector<std::uint8_t> used = used_nodes(mesh, face_nodes);
   const std::vector<Index> nodes = distinct_nodes(used);
   const Grid grid = make_grid(mesh, nodes);
+  const std::vector<PlacedNode> placed = sorted_by_position(mesh, nodes, grid);
   WeldedPoints welded;
-  std::vector<Cell> cells;
-  for (const PlacedNode& placed : sorted_by_position(mesh, nodes, grid)) {
-    if (!cells.empty() && cells.back() == placed.cell) continue;
-    cells.push_back(placed.cell);
-    welded.points.push_back(mesh.nodes[placed.node]);
+  welded.point_of_node.assign(mesh.nodes.size(), -1);
+  welded.points.reserve(placed.size());
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    if (i == 0 || placed[i].cell != placed[i - 1].cell)
+      welded.points.push_back(mesh.nodes[placed[i].node]);
+    welded.point_of_node[placed[i].node] = static_cast<Index>(welded.points.size()) - 1;
   }
-  welded.point_of_node = find_cells(mesh, grid, cells);
-  leave_coincident_nodes(used, welded);
+  if (nodes.size() < mesh.nodes.size())
+    welded.n_coincident_nodes = count_coincident_nodes(mesh, used, grid, placed);
   return welded;
 }
 

@@ -106,6 +106,7 @@ CellFace cell_face(const ElementBlock& block, Index element, std::size_t face) {
 }
 
 std::vector<CellFace> boundary_faces(const Mesh& mesh, int cell_dimension) {
+  if (n_elements(mesh, cell_dimension) == 0) return {};
   const Buckets buckets = make_buckets(mesh, cell_dimension);
   constexpr std::size_t grain = 8192;
   std::vector<std::vector<CellFace>> parts((mesh.nodes.size() + grain - 1) / grain);

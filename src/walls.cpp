@@ -3,22 +3,33 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <string>
 
 #include <fmt/format.h>
 
 #include "element_nodes.hpp"
 #include "messages.hpp"
+#include "parallel.hpp"
 #include "surface_faces.hpp"
 #include "volume_faces.hpp"
 
 namespace roughmesh::detail {
 namespace {
 
+constexpr std::size_t grain = 4096;
+
 // Facets of one surface by the nodes of their corners.
 class FacetsOfSurface {
  public:
   explicit FacetsOfSurface(const Surface& surface)
-      : surface_(surface), lookup_(surface.face_offsets, surface.face_points) {}
+      : lookup_(surface.face_offsets, surface.face_points) {
+    if (surface.nodes.empty()) return;
+    first_node_ = surface.nodes.front();
+    point_of_node_.assign(static_cast<std::size_t>(surface.nodes.back() - first_node_) + 1, -1);
+    for (std::size_t i = 0; i < surface.nodes.size(); ++i)
+      point_of_node_[surface.nodes[i] - first_node_] = surface.point_of_node[i];
+  }
 
   bool contains(std::span<const Index> corners) const {
     std::array<Index, 4> points{};
@@ -31,60 +42,69 @@ class FacetsOfSurface {
 
  private:
   Index point_of(Index node) const {
-    const auto at = std::lower_bound(surface_.nodes.begin(), surface_.nodes.end(), node);
-    if (at == surface_.nodes.end() || *at != node) return -1;
-    return surface_.point_of_node[at - surface_.nodes.begin()];
+    if (node < first_node_) return -1;
+    const auto at = static_cast<std::size_t>(node - first_node_);
+    return at < point_of_node_.size() ? point_of_node_[at] : -1;
   }
 
-  const Surface& surface_;
   FaceLookup lookup_;
+  Index first_node_ = 0;
+  std::vector<Index> point_of_node_;  // from the first node to the last
 };
 
 // Marks the nodes of faces that are part of no surface: they belong to walls, which stay.
 class WallMarker {
  public:
   WallMarker(const Mesh& mesh, std::span<const Surface> surfaces)
-      : mesh_(mesh),
-        facets_(surfaces.begin(), surfaces.end()),
-        moves_(mesh.nodes.size(), 0),
-        on_wall_(mesh.nodes.size(), 0) {
-    for (const Surface& surface : surfaces)
-      for (const Index node : surface.nodes) moves_[node] = 1;
-  }
+      : mesh_(mesh), facets_(surfaces.begin(), surfaces.end()), on_wall_(mesh.nodes.size(), 0) {}
 
-  void add(const ElementType& type, std::span<const Index> nodes, Tag tag) {
-    const auto& parts = facets(type);
-    const bool is_selected = std::all_of(parts.begin(), parts.end(), [&](const auto& facet) {
-      return is_facet_selected(facet, nodes, tag);
+  /// Returns whether the face is in two surfaces. Called from several threads.
+  bool add(const ElementType& type, std::span<const Index> nodes) {
+    bool is_selected = true, is_in_two = false;
+    for (const std::vector<int>& facet : facets(type)) {
+      const auto n = n_surfaces_with(facet, nodes);
+      is_selected = is_selected && n > 0;
+      is_in_two = is_in_two || n > 1;
+    }
+    for (std::size_t k = 0; !is_selected && k < nodes.size(); ++k)
+      std::atomic_ref(on_wall_[nodes[k]]).store(1, std::memory_order_relaxed);
+    return is_in_two;
+  }
+  void add_block(const ElementBlock& block) {
+    std::vector<Index> in_two((block.tags.size() + grain - 1) / grain, -1);
+    parallel_for(block.tags.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = end; i-- > begin;) {
+        const auto e = static_cast<Index>(i);
+        if (add(block.type, block.element(e))) in_two[begin / grain] = e;
+      }
     });
-    if (is_selected) return;
-    for (const Index node : nodes) on_wall_[node] = 1;
+    for (const Index e : in_two)
+      if (e >= 0)
+        refuse_overlap(fmt::format("element {}", block.tags[e]), block.element(e).front());
+  }
+  void add_boundary_face(const CellFace& face) {
+    if (add(face.type, face.all())) refuse_overlap("a face of the boundary", face.all().front());
   }
   std::vector<std::uint8_t> take() { return std::move(on_wall_); }
 
  private:
-  bool is_facet_selected(std::span<const int> facet, std::span<const Index> nodes, Tag tag) const {
+  std::ptrdiff_t n_surfaces_with(std::span<const int> facet, std::span<const Index> nodes) const {
     std::array<Index, 4> corners{};
-    for (std::size_t k = 0; k < facet.size(); ++k) {
-      corners[k] = nodes[facet[k]];
-      if (!moves_[corners[k]]) return false;
-    }
-    const auto n = std::count_if(facets_.begin(), facets_.end(), [&](const auto& facets) {
+    for (std::size_t k = 0; k < facet.size(); ++k) corners[k] = nodes[facet[k]];
+    return std::count_if(facets_.begin(), facets_.end(), [&](const FacetsOfSurface& facets) {
       return facets.contains({corners.data(), facet.size()});
     });
-    if (n > 1) refuse_overlap(tag, mesh_.nodes[corners[0]]);
-    return n == 1;
   }
 
-  [[noreturn]] static void refuse_overlap(Tag tag, const Vec3& x) {
+  [[noreturn]] void refuse_overlap(const std::string& face, Index node) const {
     throw InputError(fmt::format(
-        "{} at {} is in two rough surfaces; choose groups that have no element in common",
-        tag > 0 ? fmt::format("element {}", tag) : "a face of the boundary", place(x)));
+        "{} at {} is in two rough surfaces; choose groups that have no element in common", face,
+        place(mesh_.nodes[node])));
   }
 
   const Mesh& mesh_;
   std::vector<FacetsOfSurface> facets_;
-  std::vector<std::uint8_t> moves_, on_wall_;
+  std::vector<std::uint8_t> on_wall_;
 };
 
 }  // namespace
@@ -93,10 +113,9 @@ std::vector<std::uint8_t> wall_nodes(const Mesh& mesh, std::span<const Surface> 
   const int face_dimension = surfaces.front().dimension;
   WallMarker walls(mesh, surfaces);
   for (const ElementBlock& block : mesh.blocks)
-    for (Index e = 0; dimension(block.type.shape) == face_dimension && e < block.size(); ++e)
-      walls.add(block.type, block.element(e), block.tags[e]);
+    if (dimension(block.type.shape) == face_dimension) walls.add_block(block);
   for (const CellFace& face : boundary_faces(mesh, face_dimension + 1))
-    walls.add(face.type, face.all(), 0);
+    walls.add_boundary_face(face);
   return walls.take();
 }
 

@@ -83,6 +83,8 @@ struct Arc {
     curve.face_tags = mesh.blocks[0].tags;
     curve.areas.assign(mesh.nodes.size(), angle / n);
     curve.area = angle;
+    if (!is_closed) curve.border_edges = {{0, 0}, {n, n}};
+    curve.n_border_edges = static_cast<Index>(curve.border_edges.size());
   }
 };
 

@@ -2,6 +2,7 @@
 // The surface that becomes rough: faces, field points, normals, areas.
 #pragma once
 
+#include <array>
 #include <numbers>
 #include <span>
 #include <string>
@@ -57,10 +58,12 @@ struct Surface {
       face_tags;         ///< n_faces element numbers in the file; 0 for a derived boundary face
   Index n_elements = 0;  ///< elements they come from; fewer than faces where the order is 2
 
-  double area = 0;                ///< of lines: length
-  MeshSize mesh_size;             ///< h is mesh_size.median
-  Index n_components = 0;         ///< pieces connected through edges (lines: through points)
-  Index n_border_edges = 0;       ///< edges of one face (end points of lines); 0 if closed
+  double area = 0;           ///< of lines: length
+  MeshSize mesh_size;        ///< h is mesh_size.median
+  Index n_components = 0;    ///< pieces connected through edges (lines: through points)
+  Index n_border_edges = 0;  ///< edges of one face (end points of lines); 0 if closed
+  /// Points of these edges, smaller first, in ascending order; of lines the end point, twice.
+  std::vector<std::array<Index, 2>> border_edges;
   Index n_nonmanifold_edges = 0;  ///< edges of three and more faces (points of so many lines)
   Index n_sharp_edges = 0;        ///< edges (points of lines) beyond SurfaceOptions::sharp_angle
   Index n_duplicate_faces = 0;    ///< elements on the same points as an earlier one; counted once

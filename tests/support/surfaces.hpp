@@ -45,7 +45,9 @@ inline Surface surface_of(const Mesh& mesh) {
         ++faces_of_edge[std::minmax(face[k], face[(k + 1) % 3])];
       }
     }
-  for (const auto& [edge, n_faces] : faces_of_edge) surface.n_border_edges += n_faces == 1;
+  for (const auto& [edge, n_faces] : faces_of_edge)
+    if (n_faces == 1) surface.border_edges.push_back({edge.first, edge.second});
+  surface.n_border_edges = static_cast<Index>(surface.border_edges.size());
   for (Vec3& normal : surface.normals) normal.normalize();
   surface.area = std::accumulate(surface.areas.begin(), surface.areas.end(), 0.0);
   std::sort(edges.begin(), edges.end());
