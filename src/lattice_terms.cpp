@@ -25,10 +25,6 @@ ScaleMixture fit(const Correlation& correlation, double tolerance, double smalle
                            {.tolerance = tolerance, .smallest_scale = smallest_scale});
 }
 
-double smallest_scale_for(double shortest, double tolerance) {
-  return shortest / std::sqrt(2 * std::log(1 / tolerance));
-}
-
 LatticeTerms one_term(const Correlation& correlation, double tolerance) {
   LatticeTerms terms;
   terms.mixture = fit(correlation, tolerance, std::numeric_limits<double>::min());
@@ -43,13 +39,46 @@ LatticeTerms one_term(const Correlation& correlation, double tolerance) {
                   cutoff));
 }
 
-// Shorter scales are part of the fit, so that those kept are what they are without a cutoff.
+// Cutoffs down to this part of the correlation length are made of one fit, shorter ones of fits
+// that reach so many times farther.
+constexpr double reach_of_fit = 0x1p-10;
+
+/// The smallest scale of a fit that knows what is below the cutoff; the same for many cutoffs, so
+/// that what one of them leaves is part of what a shorter one does.
+double scale_below(double cutoff, double length) {
+  double scale = length;
+  do scale *= reach_of_fit;
+  while (scale > cutoff / 4);
+  return scale;
+}
+
+/// How much of each term is above the cutoff. A term of a fitted mixture stands for the scales up
+/// to the middle of the way to the next ones, evenly in their logarithm, so that the variance falls
+/// steadily with the cutoff; one of an exact mixture stands for itself.
+void cut(ScaleMixture& mixture, double cutoff) {
+  std::vector<MixtureTerm>& terms = mixture.terms;
+  if (mixture.ratio == 1) {
+    std::erase_if(terms, [&](const MixtureTerm& term) { return term.scale < cutoff; });
+    return;
+  }
+  const std::vector<MixtureTerm> all = terms;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const double scale = all[k].scale;
+    const double low = k > 0 ? std::sqrt(all[k - 1].scale * scale) : scale;
+    const double high = k + 1 < all.size() ? std::sqrt(scale * all[k + 1].scale) : scale;
+    if (cutoff <= low) continue;
+    const double share = cutoff < high ? std::log(high / cutoff) / std::log(high / low) : 0;
+    terms[k].weight *= share;
+  }
+  std::erase_if(terms, [](const MixtureTerm& term) { return !(term.weight > 0); });
+}
+
 LatticeTerms terms_above_cutoff(const Correlation& correlation, double tolerance, double cutoff) {
-  constexpr double reach = 5;
   LatticeTerms terms;
-  terms.mixture = fit(correlation, mixture_share * tolerance, cutoff / reach);
+  terms.mixture = fit(correlation, mixture_share * tolerance,
+                      scale_below(cutoff, correlation.autocorrelation().length()));
   std::vector<MixtureTerm>& kept = terms.mixture.terms;
-  std::erase_if(kept, [&](const MixtureTerm& term) { return term.scale < cutoff; });
+  cut(terms.mixture, cutoff);
   if (kept.empty()) refuse_cutoff(cutoff);
   terms.mixture.nugget = 0;
   double variance = 0;
@@ -122,11 +151,13 @@ LatticeTerms terms_for_places(const Correlation& correlation, double tolerance,
   const Vec3 period(space.period(0), space.period(1), space.period(2));
   const std::vector<double> nearest = nearest_distances(places.places(), period);
   const double length = correlation.autocorrelation().length();
-  const double shortest = std::clamp(*std::min_element(nearest.begin(), nearest.end()),
-                                     same_place * length, std::min(length, quarter_cell(period)));
+  // Lengths of more than 10^8 periods make same places of all; the quarter cell decides then.
+  const double shortest =
+      std::min({std::max(*std::min_element(nearest.begin(), nearest.end()), same_place * length),
+                length, quarter_cell(period)});
   const double share = mixture_share * tolerance;
   LatticeTerms terms;
-  terms.mixture = fit(correlation, share, smallest_scale_for(shortest, share));
+  terms.mixture = fit(correlation, share, smallest_scale(shortest, share));
   terms.lattice_error = lattice_share * tolerance;
   terms.distance = median(nearest);
   const double allowed = nugget_share * tolerance / n_nearest_images(period);

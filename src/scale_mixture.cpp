@@ -379,6 +379,10 @@ double shortest_distance(const ScaleMixtureOptions& options) {
   return options.smallest_scale * std::sqrt(-2 * std::log(options.tolerance));
 }
 
+double smallest_scale(double shortest_distance, double tolerance) {
+  return shortest_distance / std::sqrt(-2 * std::log(tolerance));
+}
+
 ScaleMixture fit_scale_mixture(const Autocorrelation& autocorrelation, const Distance& distance,
                                const ScaleMixtureOptions& options) {
   check_options(options);

@@ -37,6 +37,9 @@ struct ScaleMixtureOptions {
 /// the distance is smallest_scale * sqrt(2 ln(1 / tolerance)).
 double shortest_distance(const ScaleMixtureOptions& options);
 
+/// The smallest scale for which distances from the shortest one on count.
+double smallest_scale(double shortest_distance, double tolerance);
+
 /// The mixture of a family, with few terms, and coarse ones. Weights and nugget are multiples of a
 /// power of 2, so that their sum is 1 in whatever order. A function of the arguments alone (of the
 /// distance, kind, stretch and periods): the same bits on every call. `table` keeps its own terms,

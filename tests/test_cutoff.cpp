@@ -98,18 +98,19 @@ TEST(Cutoff, OtherOptionsGiveOtherHeights) {
 }
 
 // The scale of the Gaussians of an exponential is l |w| with w normal, so that those below the
-// cutoff c hold erf(c / (sqrt 2 l)) of the variance, up to the step of the ladder, at most 2.
+// cutoff c hold erf(c / (sqrt 2 l)) of the variance, up to half the step of the ladder, at most
+// 2, on either side.
 TEST(Cutoff, LosesTheVarianceBelowIt) {
   const Mesh sphere = test::icosphere(3);
   for (const double cutoff : {0.01, 0.04, 0.1}) {
     const Result result = run(sphere, options_for(with_cutoff(exponential, cutoff)));
     const double l = exponential.length[0], lost = result.lattice().lost_variance;
-    EXPECT_GE(lost, std::erf(cutoff / 2 / l / std::numbers::sqrt2));
-    EXPECT_LE(lost, std::erf(cutoff * 2 / l / std::numbers::sqrt2));
+    EXPECT_GE(lost, std::erf(cutoff / 2 / l));
+    EXPECT_LE(lost, std::erf(cutoff / l));
     double kept = 0;
     for (const GaussianTerm& term : result.lattice().terms) {
       kept += term.weight;
-      EXPECT_GE(term.scale, cutoff);
+      EXPECT_GE(term.scale, cutoff / std::numbers::sqrt2);
     }
     EXPECT_NEAR(kept + lost, 1, 1e-12);
     EXPECT_LE(result.report.surfaces[0].audit.covariance_error, result.report.request.tolerance);
@@ -148,7 +149,7 @@ TEST(Cutoff, WarnsOfMoreThanOnePercentWithANumberThatHelps) {
                                   fmt::format("Rq is {:.4g} ", 0.01 * std::sqrt(1 - lost)),
                                   fmt::format("--rms {:.4g} ", 0.01 / std::sqrt(1 - lost))})
     EXPECT_NE(text.find(part), std::string::npos) << text;
-  EXPECT_EQ(warning(with_cutoff({.length = {0.4}, .acf = Family::matern, .nu = 2.5}, 0.05), &lost),
+  EXPECT_EQ(warning(with_cutoff({.length = {0.4}, .acf = Family::matern, .nu = 2.5}, 0.1), &lost),
             "");
   EXPECT_GT(lost, 0);
   EXPECT_EQ(warning(exponential, &lost), "");
@@ -208,6 +209,7 @@ TEST(Cutoff, LinesOfAPlaneAreSampledInTwoDimensions) {
   for (const auto& [mesh, dimension] : {std::pair{&line, 2}, {&plate, 3}, {&upright, 3}}) {
     const std::vector<double> heights = run(*mesh, options_for({.length = {0.4}})).heights[0];
     EXPECT_LE(largest_difference(heights, from_sampler(*mesh, dimension)), 1e-14);
+    if (mesh == &upright) continue;  // which has no place in a plane z = const
     EXPECT_GT(largest_difference(heights, from_sampler(*mesh, 5 - dimension)), 1e-3);
   }
 }

@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include <Eigen/Core>
 #include <gtest/gtest.h>
 
 #include "roughmesh/field.hpp"
@@ -36,7 +37,8 @@ TEST(LatticeCutoff, LeavesTheGaussiansAboveIt) {
     const FieldSampler sampler =
         lattice_sampler(places, rho, Distance::euclidean(), {.cutoff = 0.13});
     const LatticeSummary& lattice = *sampler.summary().lattice;
-    for (const GaussianTerm& term : lattice.terms) EXPECT_GE(term.scale, 0.13);
+    for (const GaussianTerm& term : lattice.terms)
+      EXPECT_GE(term.scale, 0.13 / std::numbers::sqrt2);
     EXPECT_NEAR(sum_of_terms(lattice, 0), 1 - lattice.lost_variance, 1e-12);
     EXPECT_EQ(lattice.nugget, 0);
     EXPECT_LE(sampler.audit().covariance_error, 1e-4);
@@ -49,26 +51,54 @@ TEST(LatticeCutoff, LeavesTheGaussiansAboveIt) {
   }
 }
 
-// Scales of an exponential are l |w|, w a normal number: P(l |w| < c) is lost, to a step of the
-// ladder of scales.
+// Scales of an exponential are l |w|, w a normal number: P(l |w| < c) is lost. The terms know where
+// the variance is to the gap between two of them, at most 4 at the largest tolerance here, and half
+// of it on either side.
 TEST(LatticeCutoff, LosesWhatIsBelowIt) {
   const std::vector<Vec3> places = test::icosphere(2).nodes;
-  const auto lost = [&](double cutoff) {
-    return lattice_sampler(places, exponential, Distance::euclidean(), {.cutoff = cutoff})
-        .summary()
-        .lattice->lost_variance;
-  };
-  double before = 0;
-  for (const double cutoff : {0.01, 0.03, 0.1, 0.3, 1.0}) {
-    const auto below = [&](double scale) { return std::erf(scale / 0.4 / std::numbers::sqrt2); };
-    EXPECT_GE(lost(cutoff), below(cutoff / 2));
-    EXPECT_LE(lost(cutoff), below(cutoff * 2));
-    EXPECT_GT(lost(cutoff), before);
-    before = lost(cutoff);
+  const auto below = [&](double scale) { return std::erf(scale / 0.4 / std::numbers::sqrt2); };
+  for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
+    double before = 0;
+    for (double cutoff = 0.01; cutoff < 0.8; cutoff *= 1.13) {
+      const double lost = lattice_sampler(places, exponential, Distance::euclidean(),
+                                          {.tolerance = tolerance, .cutoff = cutoff})
+                              .summary()
+                              .lattice->lost_variance;
+      EXPECT_GE(lost, below(cutoff / 2)) << cutoff;
+      EXPECT_LE(lost, below(cutoff * 2)) << cutoff;
+      EXPECT_GT(lost, before) << cutoff;
+      before = lost;
+    }
   }
   const FieldSampler whole =
       lattice_sampler(places, gaussian, Distance::euclidean(), {.cutoff = 0.39});
   EXPECT_EQ(whole.summary().lattice->lost_variance, 0);
+}
+
+// What two cutoffs both leave is one field. The longer one keeps b_k <= a_k of each term, so that
+// heights have the correlation sum sqrt(a_k b_k) / sqrt(sum a_k sum b_k) >= sqrt(sum b_k / sum
+// a_k). Over a sphere of some 40 independent patches its estimate spreads by 0.02.
+TEST(LatticeCutoff, OfTwoTheLongerIsPartOfTheShorter) {
+  const std::vector<Vec3> places = test::icosphere(4).nodes;
+  struct Cut {
+    Eigen::ArrayXd heights;
+    double left;
+  };
+  const auto cut = [&](double cutoff) {
+    const FieldSampler sampler =
+        lattice_sampler(places, exponential, Distance::euclidean(), {.cutoff = cutoff});
+    const std::vector<double> z = sampler.heights(3, 1);
+    return Cut{Eigen::Map<const Eigen::ArrayXd>(z.data(), static_cast<Eigen::Index>(z.size())),
+               1 - sampler.summary().lattice->lost_variance};
+  };
+  const Cut finest = cut(0.02);
+  for (const double cutoff : {0.021, 0.025, 0.03, 0.04, 0.06, 0.1}) {
+    const Cut longer = cut(cutoff);
+    const double correlation =
+        (longer.heights * finest.heights).sum() /
+        std::sqrt(longer.heights.square().sum() * finest.heights.square().sum());
+    EXPECT_GT(correlation, std::sqrt(longer.left / finest.left) - 0.1) << cutoff;
+  }
 }
 
 TEST(LatticeCutoff, HoldsForPeriodsPlanesAndStreaks) {
@@ -142,14 +172,30 @@ TEST(LatticeRefusal, OfATableThatNoMixtureMeets) {
                {"table", "mixture of Gaussians", "cholesky"});
 }
 
+// Also where the method was not asked for: another one would give other heights.
 TEST(LatticeRefusal, OfATooSmallTolerance) {
-  for (const double tolerance : {1e-12, 9.9e-9, 1e-300})
-    expect_parts(refusal(gaussian, Distance::euclidean(),
-                         {.method = Method::lattice, .tolerance = tolerance}),
-                 {"tolerance", "1e-08", "cholesky"});
+  for (const Method method : {Method::lattice, Method::automatic})
+    for (const double tolerance : {1e-12, 9.9e-9, 1e-300})
+      expect_parts(
+          refusal(gaussian, Distance::euclidean(), {.method = method, .tolerance = tolerance}),
+          {"tolerance", "1e-08", "cholesky"});
   EXPECT_EQ(
       refusal(gaussian, Distance::euclidean(), {.method = Method::lattice, .tolerance = 1e-8}),
       "no error");
+}
+
+TEST(LatticeRefusal, OfDimensionsThatAreNone) {
+  const std::vector<Vec3> sphere = test::icosphere(1).nodes;
+  for (const int dimension : {-1, 0, 1, 4})
+    expect_parts(message_of([&] {
+                   lattice_sampler(sphere, gaussian, Distance::euclidean(),
+                                   {.dimension = dimension});
+                 }),
+                 {"dimension", "2 or 3"});
+  expect_parts(message_of([&] {
+                 lattice_sampler(sphere, gaussian, Distance::euclidean(), {.dimension = 2});
+               }),
+               {"dimension 2", "z = ", "plane"});
 }
 
 // Doubles at 1e18 lengths are 128 lengths apart.
