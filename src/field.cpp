@@ -48,6 +48,20 @@ struct FieldSampler::Plan {
 
 namespace {
 
+/// Places in a plane z = const, to round-off.
+void require_plane(std::span<const Vec3> places) {
+  const auto [low, high] = std::minmax_element(
+      places.begin(), places.end(), [](const Vec3& x, const Vec3& y) { return x.z() < y.z(); });
+  double largest = 0;
+  for (const Vec3& x : places) largest = std::max(largest, x.cwiseAbs().maxCoeff());
+  if (high->z() - low->z() <= 1e-9 * largest) return;
+  throw InputError(
+      fmt::format("a field in a space of dimension 2 has places from z = {:g} to {:g}; give them "
+                  "in a plane z = "
+                  "const, or dimension 3",
+                  low->z(), high->z()));
+}
+
 void check_input(const Correlation& correlation, const FieldOptions& options) {
   if (!(options.tolerance > 0) || !(options.tolerance < 1))
     throw InputError(fmt::format("tolerance {} is out of range; give a number between 0 and 1",
@@ -57,24 +71,33 @@ void check_input(const Correlation& correlation, const FieldOptions& options) {
         fmt::format("cutoff {} is out of range; give a length above 0", *options.cutoff));
   if (correlation.n_points() == 0)
     throw InputError("a field needs at least one point; select a surface");
+  if (options.dimension != 2 && options.dimension != 3)
+    throw InputError(
+        fmt::format("dimension {} of the space of a field; give 2 or 3", options.dimension));
+  if (options.dimension == 2) require_plane(correlation.places());
 }
 
 /// What decides is the correlation alone, never the number of points, so that heights of one
 /// request come from one method on every mesh.
 Method chosen(const Correlation& correlation, const FieldOptions& options) {
   if (options.method != Method::automatic) return options.method;
-  return detail::lattice_obstacle(correlation, options).empty() ? Method::lattice
-                                                                : Method::cholesky;
+  return detail::lattice_obstacle(correlation).empty() ? Method::lattice : Method::cholesky;
+}
+
+/// Only the method lattice can leave out short scales.
+[[noreturn]] void refuse_cutoff(const Correlation& correlation, double cutoff) {
+  const std::string obstacle = detail::lattice_obstacle(correlation);
+  throw InputError(fmt::format(
+      "cutoff {:g}: {}", cutoff,
+      obstacle.empty() ? "only the method lattice can leave out short scales; leave the cutoff out "
+                         "or choose lattice"
+                       : obstacle + ", without a cutoff"));
 }
 
 detail::PreparedField prepare(const Correlation& correlation, const FieldOptions& options) {
   if (chosen(correlation, options) == Method::lattice)
     return detail::prepare_lattice(correlation, options);
-  if (options.cutoff)
-    throw InputError(
-        fmt::format("cutoff {}: only the method lattice can leave out short scales; leave it out "
-                    "or choose lattice",
-                    *options.cutoff));
+  if (options.cutoff) refuse_cutoff(correlation, *options.cutoff);
   return detail::prepare_cholesky(correlation);
 }
 

@@ -107,7 +107,8 @@ class LatticeField final : public FieldMethod {
       lattice.terms.push_back({term.weight, term.scale});
     lattice.nugget = mean_nugget();
     lattice.lost_variance = lost_variance_;
-    lattice.same_on_other_meshes = is_cut_ || is_one_gaussian(correlation().autocorrelation());
+    lattice.same_on_other_meshes =
+        (is_cut_ && !has_enlarged_cells_) || is_one_gaussian(correlation().autocorrelation());
     return summary;
   }
 
@@ -140,11 +141,12 @@ class LatticeField final : public FieldMethod {
   }
 
   /// Cells have an edge that the correlation length decides, to a power of 2, so that under a
-  /// cutoff they are the same on every mesh.
-  double coarse_cell(double distance) const {
+  /// cutoff they are the same on every mesh; but for a body so far across that places cannot be
+  /// sorted into such cells.
+  double coarse_cell(double distance) {
     const double length = correlation().autocorrelation().length();
     double cell = length * std::exp2(std::round(std::log2(coarse_distance * distance / length)));
-    while (places_.n_doublings(cell) > 20) cell *= 2;
+    for (; places_.n_doublings(cell) > 20; cell *= 2) has_enlarged_cells_ = true;
     return cell;
   }
 
@@ -233,7 +235,16 @@ class LatticeField final : public FieldMethod {
   std::vector<std::uint32_t> position_;  ///< of each point among the sorted places
   ScaleMixture mixture_;
   double lost_variance_ = 0;
+  bool has_enlarged_cells_ = false;  ///< which depend on the extent of the places
 };
+
+void require_reachable(double tolerance) {
+  if (tolerance >= smallest_tolerance) return;
+  throw InputError(
+      fmt::format("--tolerance {:g}: below {:g}, which the method lattice can reach; use a larger "
+                  "one or --method cholesky",
+                  tolerance, smallest_tolerance));
+}
 
 void require_memory(Index n) {
   const double needed = bytes_per_point * static_cast<double>(n);
@@ -247,7 +258,7 @@ void require_memory(Index n) {
 
 }  // namespace
 
-std::string lattice_obstacle(const Correlation& correlation, const FieldOptions& options) {
+std::string lattice_obstacle(const Correlation& correlation) {
   const DistanceKind kind = correlation.distance().kind();
   const Autocorrelation& autocorrelation = correlation.autocorrelation();
   if (kind != DistanceKind::euclidean && kind != DistanceKind::periodic)
@@ -260,17 +271,13 @@ std::string lattice_obstacle(const Correlation& correlation, const FieldOptions&
         "--method lattice: the table is met by no mixture of Gaussians (the best leaves {:.3g}); "
         "use --method cholesky",
         autocorrelation.fit_residual().value_or(1));
-  if (options.tolerance < smallest_tolerance)
-    return fmt::format(
-        "--tolerance {:g}: below {:g}, which the method lattice can reach; use a "
-        "larger one or --method cholesky",
-        options.tolerance, smallest_tolerance);
   return {};
 }
 
 PreparedField prepare_lattice(const Correlation& correlation, const FieldOptions& options) {
-  const std::string obstacle = lattice_obstacle(correlation, options);
+  const std::string obstacle = lattice_obstacle(correlation);
   if (!obstacle.empty()) throw InputError(obstacle);
+  require_reachable(options.tolerance);
   require_memory(correlation.n_points());
   auto field = std::make_unique<LatticeField>(correlation, options);
   PreparedField prepared;

@@ -10,9 +10,10 @@
 namespace roughmesh::detail {
 
 /// Why the method cannot sample this correlation, with the way out; empty if it can.
-std::string lattice_obstacle(const Correlation& correlation, const FieldOptions& options);
+std::string lattice_obstacle(const Correlation& correlation);
 
-/// @throws InputError  a correlation with an obstacle; a cutoff that leaves nothing; places too far
+/// @throws InputError  a correlation with an obstacle; a tolerance below 1e-8; a cutoff that leaves
+/// nothing; places too far
 ///                     from the origin to be told apart at this tolerance; too little free memory
 PreparedField prepare_lattice(const Correlation& correlation, const FieldOptions& options);
 

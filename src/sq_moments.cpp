@@ -119,9 +119,12 @@ class PairSums {
  public:
   PairSums(const MaskedField& field, const PointTree& tree)
       : field_(field), tree_(tree), masks_(tree.n_cells()) {
-    for (Index i = 0; field.covariance && i < field.correlation.n_points(); ++i)
-      variances_.push_back(field.covariance(i, i));
     constexpr std::size_t grain = 64;
+    if (field.covariance) variances_.resize(field.areas.size());
+    parallel_for(variances_.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        variances_[i] = field.covariance(static_cast<Index>(i), static_cast<Index>(i));
+    });
     parallel_for(masks_.size(), grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t c = begin; c < end; ++c) masks_[c] = mask_of(field, tree.points(c));
     });

@@ -89,7 +89,8 @@ struct Audit {
 /// `lattice` sums white noise on lattices, keyed by absolute place, under Gaussian kernels
 /// (docs/math.md, eq. 46 to 49). Heights have the same bits on any number of threads, and differ by
 /// at most 1e-12 across processors. Where LatticeSummary::same_on_other_meshes holds they depend on
-/// (seed, realization, place) alone; otherwise also on how close points are.
+/// (seed, realization, place) alone, for one correlation and equal options; otherwise also on how
+/// close points are.
 class FieldSampler {
  public:
   /// @param correlation  of n >= 1 points in canonical order (Surface::points); of points that
