@@ -13,7 +13,7 @@ namespace roughmesh::app {
 namespace {
 
 std::atomic<int> signal_that_came = 0;
-std::atomic<bool> has_grace = false, has_terminal = false;
+std::atomic<bool> has_grace = false, has_terminal = false, has_files = false;
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
 template <std::size_t N>
@@ -25,9 +25,12 @@ void print(const char (&text)[N]) {
 [[noreturn]] void leave(int signal_number) {
   discard_unfinished_files();
   if (has_terminal) print("\n");  // below the progress bar
-  print(
-      "roughmesh: interrupted; finished realizations are kept, go on with --first and a --report "
-      "of its own\n");
+  if (has_files)
+    print(
+        "roughmesh: interrupted; finished realizations are kept, go on with --first and a --report "
+        "of its own\n");
+  else
+    print("roughmesh: interrupted; nothing was written\n");
   _exit(128 + signal_number);
 }
 
@@ -54,6 +57,8 @@ void handle_signals() {
 
 GracePeriod::GracePeriod() { has_grace = true; }
 GracePeriod::~GracePeriod() { has_grace = false; }
+
+void note_finished_files() { has_files = true; }
 
 int interrupted() { return signal_that_came; }
 

@@ -19,6 +19,9 @@ class GracePeriod {
   GracePeriod& operator=(const GracePeriod&) = delete;
 };
 
+/// From now on an interrupt says how to go on.
+void note_finished_files();
+
 /// The signal that came in a grace period; 0: none.
 int interrupted();
 

@@ -126,10 +126,21 @@ class ReportFile {
     const Clock::time_point begin = Clock::now();
     latest_.timings.read = read_seconds_;
     latest_.timings.total = seconds_since(start_);
-    write_text(to_json(latest_), path_);
+    write_beside_meshes();
     written_ = Clock::now();
     // A long report takes long to write, which must stay a small part of the run.
     pause_ = std::max(1.0, 20 * seconds_since(begin));
+  }
+
+  void write_beside_meshes() {
+    try {
+      write_text(to_json(latest_), path_);
+    } catch (const InputError& error) {
+      throw InputError(
+          fmt::format("{}; the meshes up to realization {} are written, their report "
+                      "is not",
+                      error.what(), latest_.realizations.back().index));
+    }
   }
 
   std::string path_;
@@ -165,13 +176,41 @@ void warn_of_digits(const Mesh& mesh, const std::string& path, Report& report) {
   }
 }
 
+/// Of the realizations from `first` on, beside the report of those before.
+std::string next_report_path(const std::string& report, std::uint64_t first) {
+  const std::string ending = report.ends_with(".report.json") ? ".report.json" : ".json";
+  const std::string stem =
+      report.ends_with(ending) ? report.substr(0, report.size() - ending.size()) : report;
+  return fmt::format("{}.from{}{}", stem, first, ending);
+}
+
 /// After an interrupt, unless that was the last realization.
 void stop_if_interrupted(const RoughenOptions& options, std::uint64_t realization) {
-  if (interrupted() == 0 || realization - options.first + 1 == options.realizations) return;
-  throw Interrupt(
-      fmt::format("interrupted; realizations {} to {} are kept, go on with --first {} and a "
-                  "--report of its own",
-                  options.first, realization, realization + 1));
+  const std::uint64_t n_done = realization - options.first + 1;
+  if (interrupted() == 0 || n_done == options.realizations) return;
+  throw Interrupt(fmt::format(
+      "interrupted; realizations {} to {} are kept, go on with --first {} --realizations {} "
+      "--report {}",
+      options.first, realization, realization + 1, options.realizations - n_done,
+      next_report_path(report_path(options), realization + 1)));
+}
+
+/// A report of earlier realizations of the same output is not replaced by that of later ones.
+void keep_earlier_report(const RoughenOptions& options) {
+  const std::string path = report_path(options);
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return;
+  RoughenOptions earlier;
+  try {
+    earlier = read_job(path);
+  } catch (const std::exception&) {
+    return;  // none is there, or what is there is no report
+  }
+  if (earlier.output != options.output || earlier.first >= options.first) return;
+  throw InputError(
+      fmt::format("--report: {} describes realizations from {} on and would be lost; name another "
+                  "one, such as --report {}",
+                  path, earlier.first, next_report_path(path, options.first)));
 }
 
 void make_realizations(const Mesh& mesh, const RoughenOptions& options,
@@ -186,6 +225,7 @@ void make_realizations(const Mesh& mesh, const RoughenOptions& options,
       report.warnings.push_back(
           fmt::format("OUTPUT does not hold all of INPUT; left out: {}", list_of(losses)));
     report.realizations.back().path = path;
+    note_finished_files();
     file.update(report);
     progress.finish_realization();
     stop_if_interrupted(options, rough.realization);
@@ -235,6 +275,7 @@ ReportFile roughen_files(const RoughenOptions& options) {
   check_output(mesh, first_path, write_options(options));
   const std::vector<std::string> losses =
       conversion_losses(mesh, first_path, write_options(options));
+  if (options.first > 0) keep_earlier_report(options);
   check_text_output(report_path(options));
   ReportFile file(report_path(options), start, seconds_since(start));
   make_realizations(mesh, options, losses, file, progress);

@@ -414,8 +414,14 @@ TEST_F(CommandLine, AnInterruptKeepsAndDescribesFinishedRealizationsOnly) {
   const auto report = nlohmann::json::parse(test::read_bytes(folder / "r_.report.json"));
   ASSERT_EQ(report["realizations"].size(), n_meshes);
   EXPECT_EQ(report["realizations"].back()["path"], fmt::format("r_{}.msh", n_meshes - 1));
-  EXPECT_NE(outcome.err.find(fmt::format("--first {} ", n_meshes)), std::string::npos)
-      << outcome.err;
+  const std::string go_on =
+      fmt::format("--first {} --realizations {} --report r_.from{}.report.json", n_meshes,
+                  1000000 - n_meshes, n_meshes);
+  EXPECT_NE(outcome.err.find(go_on), std::string::npos) << outcome.err;
+  // Without a report of its own the rest would cost what is known of the beginning.
+  const Outcome forgetful = run("roughen --job r_.report.json --realizations 1 --first 2");
+  EXPECT_EQ(forgetful.exit_code, 2);
+  EXPECT_NE(forgetful.err.find("r_.from2.report.json"), std::string::npos) << forgetful.err;
   ASSERT_EQ(run(sphere_job + fmt::format("-o more_{{realization}}.msh --realizations 2 --first {}",
                                          n_meshes - 1))
                 .exit_code,
