@@ -110,11 +110,12 @@ std::function<double(Index, Index)> covariance_of(const FieldSampler& sampler,
   const bool is_clipped = cholesky && cholesky->factorization == Factorization::eigenvalue;
   if (!is_clipped && !plan.request.cutoff) return {};
   const std::vector<Index> sampled = masters(field.partners);
+  std::vector<Index> position_of(field.partners.master.size());
+  for (std::size_t k = 0; k < sampled.size(); ++k) position_of[sampled[k]] = static_cast<Index>(k);
   std::vector<Index> position;
+  position.reserve(plan.field_point.size());
   for (const Index point : plan.field_point)
-    position.push_back(static_cast<Index>(
-        std::lower_bound(sampled.begin(), sampled.end(), field.partners.master[point]) -
-        sampled.begin()));
+    position.push_back(position_of[field.partners.master[point]]);
   return [&sampler, is_clipped, position = std::move(position)](Index i, Index j) {
     return is_clipped ? sampler.covariance(position[i], position[j])
                       : sampler.target(position[i], position[j]);
@@ -246,6 +247,7 @@ class Run {
       described.resolution =
           timed(times().surface, [&] { return assess_resolution(surface, correlation); });
       detail::warn_of_surface(report_, surface, rough_.plans[s].request);
+      detail::warn_of_period(report_, surface, rough_.plans[s].request);
       detail::warn_of_scale(report_, described, rough_.plans[s].request);
     }
   }
@@ -270,6 +272,10 @@ class Run {
         return expect(rough_.surfaces[s], plan, detail::correlation_of(plan, rough_.fields),
                       covariance_of(samplers_[field], plan, rough_.fields[field]));
       }));
+      const SqTarget& target = targets_.back();
+      if (std::any_of(plan.weights.begin(), plan.weights.end(), [](double w) { return w == 1; }))
+        detail::warn_of_constant_heights(report_, rough_.surfaces[s].groups,
+                                         target.unfaded.value_or(target.whole).mean);
     }
     detail::warn_of_fields(report_);
     report_.citations = cited_works(samplers_, rough_.fields);

@@ -21,6 +21,7 @@ constexpr std::size_t grain = 4096;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double largest_h_over_l = 1 / sizes_per_length;
 constexpr double largest_share_above_nyquist = 0.05;
+constexpr double largest_rms_slope = 1;
 // The largest edge may be this many times the median of the rule: the diagonals of squares (1.4)
 // and the spread of usual triangulations must not warn.
 constexpr double largest_edge_allowance = 2;
@@ -220,7 +221,7 @@ void warn_of_coarse_mesh(const Resolution& resolution, std::vector<std::string>&
     warnings.push_back(fmt::format(
         "the mesh is coarse for the correlation length: mesh size {:.3g} is above l/2.5 = {:.3g}, "
         "so linear elements miss {} of the roughness between the nodes; refine the surface to "
-        "{:.3g} or take --length {:.3g} or more",
+        "{:.3g} or take a correlation length of {:.3g} or more",
         resolution.mesh_size, limit, percent(resolution.interpolation_error), limit,
         resolution.mesh_size / largest_h_over_l));
   else if (resolution.largest_edge > largest_edge_allowance * limit)
@@ -255,6 +256,16 @@ void warn_of_folds(const Resolution& resolution, double rq, std::vector<std::str
       "surface may fold; take --rms {:.3g} or less",
       rq * resolution.expected_max_height, resolution.min_curvature_radius,
       resolution.largest_safe_rq));
+}
+
+void warn_of_slopes(const Resolution& resolution, double rq, std::vector<std::string>& warnings) {
+  const double slope = rq * resolution.rms_slope;
+  if (!(slope > largest_rms_slope)) return;
+  warnings.push_back(
+      fmt::format("the rms slope on this mesh is {:.3g} (1 is 45 degrees): faces stand on end, and "
+                  "elements behind them get thin or turn over; take --rms {:.3g} or less, or a "
+                  "larger correlation length",
+                  slope, largest_rms_slope / resolution.rms_slope));
 }
 
 }  // namespace
@@ -296,7 +307,15 @@ std::vector<std::string> resolution_warnings(const Resolution& resolution, doubl
   std::vector<std::string> warnings;
   warn_of_coarse_mesh(resolution, warnings);
   warn_of_rough_spectrum(resolution, warnings);
+  for (std::string& warning : height_warnings(resolution, rq))
+    warnings.push_back(std::move(warning));
+  return warnings;
+}
+
+std::vector<std::string> height_warnings(const Resolution& resolution, double rq) {
+  std::vector<std::string> warnings;
   warn_of_folds(resolution, rq, warnings);
+  warn_of_slopes(resolution, rq, warnings);
   return warnings;
 }
 

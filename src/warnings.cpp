@@ -42,7 +42,14 @@ void warn_of_cutoff(Report& report, const SurfaceReport& surface, const Roughnes
                    request.rms / left));
 }
 
-void warn_of_field(Report& report, const SurfaceReport& surface) {
+/// What helps where no random field has the correlation that was asked for.
+const char* remedy_for_indefinite(const Roughness& request) {
+  return request.acf == Family::table
+             ? "damp the oscillations of the table, or give its pairs closer together"
+             : "use a shorter length or --distance euclidean";
+}
+
+void warn_of_field(Report& report, const SurfaceReport& surface, const Roughness& request) {
   if (surface.audit.covariance_error > report.request.tolerance)
     warn(report, surface.groups,
          fmt::format("audited covariance error {:.3g} is above the tolerance {:g}",
@@ -51,9 +58,9 @@ void warn_of_field(Report& report, const SurfaceReport& surface) {
   if (cholesky && cholesky->variance_change > 1e-3)
     warn(report, surface.groups,
          fmt::format("this autocorrelation is not positive definite for this distance: {} negative "
-                     "eigenvalues were set to zero, which changes variances by up to {:.3g}; use a "
-                     "shorter length or --distance euclidean",
-                     cholesky->negative_eigenvalues, cholesky->variance_change));
+                     "eigenvalues were set to zero, which changes variances by up to {:.3g}; {}",
+                     cholesky->negative_eigenvalues, cholesky->variance_change,
+                     remedy_for_indefinite(request)));
 }
 
 }  // namespace
@@ -82,11 +89,41 @@ void warn_of_surface(Report& report, const Surface& surface, const Roughness& re
                      surface.n_duplicate_faces, words.faces));
 }
 
+void warn_of_period(Report& report, const Surface& surface, const Roughness& request) {
+  constexpr double rounding = 1e-6;
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : surface.points) box.extend(x);
+  for (std::size_t axis = 0; axis < request.period.size(); ++axis) {
+    const double period = request.period[axis];
+    if (!(period > 0)) continue;
+    const double width = box.sizes()[static_cast<Eigen::Index>(axis)], n = width / period;
+    if (std::abs(n - std::round(n)) <= rounding) continue;
+    warn(report, surface.groups,
+         fmt::format(
+             "--period is {:g} along {}, but the surface is {:g} wide there, {:.4g} periods: "
+             "its two sides will not match; give the width of the periodic cell",
+             period, "xyz"[axis], width, n));
+  }
+}
+
+void warn_of_constant_heights(Report& report, const std::vector<std::string>& groups,
+                              double sq_over_rq) {
+  if (!(sq_over_rq * sq_over_rq < report.request.tolerance)) return;
+  warn(report, groups,
+       fmt::format("heights are nearly the same all over the surface: their Sq is {:.2g} of --rms, "
+                   "less than a covariance error of {:g} leaves certain; take a shorter --length "
+                   "(along the surface, where there are several)",
+                   sq_over_rq, report.request.tolerance));
+}
+
 void warn_of_scale(Report& report, const SurfaceReport& surface, const Roughness& request) {
   const double rq = request.rms;
-  for (const std::string& text : resolution_warnings(surface.resolution, rq))
-    warn(report, surface.groups, request.cutoff ? "before the cutoff: " + text : text);
   const double h = surface.mesh_size.median;
+  // What is finer than the mesh a cutoff above its size takes away.
+  const bool is_cut = request.cutoff && *request.cutoff >= h;
+  for (const std::string& text : is_cut ? height_warnings(surface.resolution, rq)
+                                        : resolution_warnings(surface.resolution, rq))
+    warn(report, surface.groups, request.cutoff ? "before the cutoff: " + text : text);
   if (rq < 1e-6 * h)
     warn(
         report, surface.groups,
@@ -109,7 +146,7 @@ void warn_of_scale(Report& report, const SurfaceReport& surface, const Roughness
 
 void warn_of_fields(Report& report) {
   for (std::size_t s = 0; s < report.surfaces.size(); ++s) {
-    warn_of_field(report, report.surfaces[s]);
+    warn_of_field(report, report.surfaces[s], report.request.surfaces[s]);
     warn_of_cutoff(report, report.surfaces[s], report.request.surfaces[s]);
   }
 }

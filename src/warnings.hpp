@@ -13,6 +13,14 @@ namespace roughmesh::detail {
 /// Sharp edges, edges of many faces, faces that count once.
 void warn_of_surface(Report& report, const Surface& surface, const Roughness& request);
 
+/// A period that is none of the surface: its sides are not whole periods apart.
+void warn_of_period(Report& report, const Surface& surface, const Roughness& request);
+
+/// Heights that hardly differ.
+/// @param sq_over_rq  expected Sq over Rq
+void warn_of_constant_heights(Report& report, const std::vector<std::string>& groups,
+                              double sq_over_rq);
+
 /// Roughness that the mesh or its size cannot carry; surface.resolution is set.
 void warn_of_scale(Report& report, const SurfaceReport& surface, const Roughness& request);
 

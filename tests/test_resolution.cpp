@@ -194,7 +194,7 @@ TEST(Resolution, FlatSurfacesHaveNoLimit) {
       test::surface_of(mesh), Autocorrelation({.length = 0.3}), Distance::euclidean());
   EXPECT_EQ(resolution.min_curvature_radius, infinite);
   EXPECT_EQ(resolution.largest_safe_rq, infinite);
-  EXPECT_TRUE(resolution_warnings(resolution, 1e9).empty());
+  EXPECT_TRUE(resolution_warnings(resolution, 0.99 / resolution.rms_slope).empty());
 }
 
 // A plate folded to an L: its faces are flat, and the fold is a sharp edge, not a curvature.
@@ -234,13 +234,13 @@ TEST(Resolution, IsTheSameOnAnyNumberOfThreads) {
 }
 
 TEST(Resolution, GaussianAtThePapersRuleDoesNotWarn) {
-  EXPECT_TRUE(resolution_warnings(on_plate(Autocorrelation({.length = 2.5 / 20})), 0.1).empty());
+  EXPECT_TRUE(resolution_warnings(on_plate(Autocorrelation({.length = 2.5 / 20})), 0.01).empty());
 }
 
 TEST(Resolution, WarnsOfACoarseMeshWithTheRemedy) {
-  const auto warnings = resolution_warnings(on_plate(Autocorrelation({.length = 0.1})), 0.1);
+  const auto warnings = resolution_warnings(on_plate(Autocorrelation({.length = 0.1})), 0.01);
   ASSERT_EQ(warnings.size(), 1U);
-  for (const char* words : {"0.05", "l/2.5 = 0.04", "--length 0.125", "refine"})
+  for (const char* words : {"0.05", "l/2.5 = 0.04", "correlation length of 0.125", "refine"})
     EXPECT_TRUE(mentions(warnings[0], words)) << words << " in: " << warnings[0];
 }
 
@@ -256,21 +256,29 @@ TEST(Resolution, WarnsOfALargeEdgeInAMeshThatIsFineElsewhere) {
 }
 
 TEST(Resolution, ExponentialWarnsOnceOfItsNature) {
-  const auto warnings = resolution_warnings(on_plate(exponential(0.2)), 0.1);
+  const auto warnings = resolution_warnings(on_plate(exponential(0.2)), 0.01);
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_TRUE(mentions(warnings[0], "7.93 %") && mentions(warnings[0], "nature")) << warnings[0];
 }
 
 TEST(Resolution, SmoothFamiliesAreToldToRefine) {
-  const auto warnings = resolution_warnings(on_plate(Autocorrelation({.length = 0.02})), 0.1);
+  const auto warnings = resolution_warnings(on_plate(Autocorrelation({.length = 0.02})), 0.01);
   ASSERT_EQ(warnings.size(), 2U);
   EXPECT_TRUE(mentions(warnings[1], "Nyquist") && mentions(warnings[1], "refine")) << warnings[1];
 }
 
+TEST(Resolution, WarnsOfFacesThatStandOnEnd) {
+  const Resolution resolution = on_plate(Autocorrelation({.length = 0.2}));
+  EXPECT_TRUE(resolution_warnings(resolution, 0.99 / resolution.rms_slope).empty());
+  const auto warnings = resolution_warnings(resolution, 1.01 / resolution.rms_slope);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_TRUE(mentions(warnings[0], "slope") && mentions(warnings[0], "1.01")) << warnings[0];
+  EXPECT_EQ(height_warnings(resolution, 1.01 / resolution.rms_slope), warnings);
+}
+
 TEST(Resolution, WarnsOfHeightsBeyondTheRadiusOfCurvature) {
-  const Resolution resolution =
-      resolution_of(test::surface_of(test::icosphere(3)), Autocorrelation({.length = 0.5}),
-                    Distance::euclidean());
+  const Resolution resolution = resolution_of(
+      test::surface_of(test::icosphere(3)), Autocorrelation({.length = 2}), Distance::euclidean());
   EXPECT_TRUE(resolution_warnings(resolution, 0.99 * resolution.largest_safe_rq).empty());
   const auto warnings = resolution_warnings(resolution, 1.01 * resolution.largest_safe_rq);
   ASSERT_EQ(warnings.size(), 1U);

@@ -189,13 +189,14 @@ void for_each_run_option(Options& o, Visit&& visit) {
   visit(
       OptionText{"method", "NAME",
                  "sampling method (lattice: linear in the nodes, --distance euclidean or periodic; "
-                 "cholesky: any distance, memory as the square of the nodes; auto: lattice where "
-                 "it can be)"},
+                 "cholesky: any distance, memory as the square of the nodes; auto: lattice for "
+                 "those distances, but for a table that is no sum of Gaussians)"},
       o.method);
-  visit(OptionText{"tolerance", "T",
-                   "largest error of covariances over Rq^2, between 0 and 1: lattice keeps it, and "
-                   "beyond it there is a warning"},
-        o.tolerance);
+  visit(
+      OptionText{"tolerance", "T",
+                 "largest error of covariances over Rq^2, between 0 and 1 (lattice: 1e-8 or more): "
+                 "lattice keeps it, and beyond it there is a warning"},
+      o.tolerance);
   visit(OptionText{"realizations", "N", "number of meshes to make"}, o.realizations);
   visit(OptionText{"first", "K", "number of the first realization"}, o.first);
   visit(OptionText{"volume", "HOW", "what the interior of a volume mesh does"}, o.volume);

@@ -39,8 +39,11 @@ struct Resolution {
 Resolution assess_resolution(const Surface& surface, const Correlation& correlation);
 
 /// One line for each limit that rms roughness `rq` on this surface passes: coarse mesh, rough
-/// spectrum, heights beyond the radius of curvature. Empty when all is well. The limits are those
-/// of docs/math.md, section "Resolution".
+/// spectrum, heights beyond the radius of curvature, slopes above 1. Empty when all is well. The
+/// limits are those of docs/math.md, section "Resolution".
 std::vector<std::string> resolution_warnings(const Resolution& resolution, double rq);
+
+/// Those of them that come from the heights and not from a coarse mesh.
+std::vector<std::string> height_warnings(const Resolution& resolution, double rq);
 
 }  // namespace roughmesh
