@@ -34,15 +34,17 @@ struct MovedVolume {
 /// Elements of the dimension above that of the surfaces follow: volumes behind faces, the faces of
 /// a planar mesh beside lines. Their inner corners move by the harmonic extension of the
 /// displacement, each component solved with the stiffness of linear simplices weighted by 1 /
-/// volume (docs/math.md, eq. 16), so that small elements near the surface deform least. Other inner
+/// volume (docs/math.md, eq. 16), so that small elements near the surface deform least. Where
+/// that inverts elements or leaves them poor, nodes around are moved by the foldover-free map (eq.
+/// 50 to 52); where an inverted element has no node that may move, edges are split. Other inner
 /// nodes of elements of order 2 follow the nodes of their edges and faces (eq. 38), which keeps a
 /// straight edge straight; that no curved element is inverted is not checked. Nodes of the domain's
 /// boundary and of every unselected face stay where they are, as do nodes that these separate from
 /// the surfaces. A mesh without such elements moves its surfaces only.
 class VolumeMover {
  public:
-  /// @param surfaces  one or more of this mesh, of one dimension, without a common face
   /// @param mesh      has to outlive the mover
+  /// @param surfaces  one or more of this mesh, of one dimension, without a common face
   /// @param last      the last method to try on a mesh with elements that can follow
   /// @throws InputError  no surface, surfaces of two dimensions, a face in two of them; an element
   ///                     of order above 2 has a node that would move
