@@ -102,7 +102,7 @@ int main() {
   const std::span surfaces(&surface, 1);
   const std::vector<Vec3> displacements = displace_nodes(surfaces, {&heights, 1});
   const VolumeMover mover(mesh, surfaces);
-  const std::vector<Vec3> moved = mover.move(displacements);
+  const std::vector<Vec3> moved = mover.move(displacements).nodes;
 
   const detail::HarmonicExtension extension = rebuild(mesh, surface);
   const auto& stiffness = extension.stiffness();

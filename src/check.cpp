@@ -17,6 +17,7 @@
 #include "messages.hpp"
 #include "parallel.hpp"
 #include "plane.hpp"
+#include "poor_elements.hpp"
 
 namespace roughmesh {
 namespace {
@@ -135,6 +136,7 @@ struct BlockView {
 
 struct ElementResult {
   double quality = 1;
+  double quality_before = 1;
   bool inverted = false;
 };
 
@@ -143,9 +145,11 @@ struct ElementResult {
 ElementResult compare(const BlockView& view, Index element) {
   const auto [before, after] = view.jacobians(element);
   const double orientation = before.sum() < 0 ? -1 : 1;
-  ElementResult result{std::numeric_limits<double>::infinity(), false};
+  constexpr double none = std::numeric_limits<double>::infinity();
+  ElementResult result{none, none, false};
   for (std::size_t i = 0; i < before.n; ++i) {
     result.quality = std::min(result.quality, orientation * after.values[i]);
+    result.quality_before = std::min(result.quality_before, orientation * before.values[i]);
     const bool has_sign = std::abs(before.values[i]) > zero_jacobian;
     const bool keeps_sign =
         std::signbit(before.values[i]) == std::signbit(after.values[i]) && after.values[i] != 0;
@@ -288,6 +292,37 @@ void check_positions(const Mesh& mesh, std::span<const Vec3> moved) {
 
 }  // namespace
 
+namespace detail {
+
+std::vector<std::uint8_t> nodes_of_poor_elements(const Mesh& mesh, std::span<const Vec3> moved,
+                                                 const PoorLimit& limit,
+                                                 std::span<const std::uint8_t> others) {
+  constexpr std::size_t grain = 2048;
+  std::vector<std::uint8_t> result(mesh.nodes.size(), 0);
+  const std::optional<Vec3> plane_normal = common_plane(mesh, moved);
+  for (const ElementBlock& block : mesh.blocks) {
+    if (dimension(block.type.shape) != dimension(mesh)) continue;
+    const BlockView view{block, mesh.nodes, moved, plane_normal};
+    std::vector<std::uint8_t> is_poor(block.tags.size(), 0);
+    parallel_for(is_poor.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const ElementResult element = compare(view, static_cast<Index>(i));
+        const double least = limit.share * std::min(element.quality_before, limit.enough);
+        is_poor[i] = element.inverted || element.quality < least;
+      }
+    });
+    const auto is_other = [&](Index node) { return !others.empty() && others[node] != 0; };
+    for (Index e = 0; e < block.size(); ++e) {
+      const auto corners = view.corners(e);
+      if (is_poor[e] == 0 || std::any_of(corners.begin(), corners.end(), is_other)) continue;
+      for (const Index node : corners) result[node] = 1;
+    }
+  }
+  return result;
+}
+
+}  // namespace detail
+
 double min_quality(const Mesh& mesh) {
   return summarize(mesh, mesh.nodes, std::nullopt).min_quality;
 }
@@ -297,10 +332,21 @@ MeshCheck check_mesh(const Mesh& mesh, std::span<const Vec3> moved) {
   const std::optional<Vec3> plane_normal = common_plane(mesh, moved);
   Summary summary = summarize(mesh, moved, plane_normal);
   summary.add(summarize_loose_faces(mesh, moved));
-  MeshCheck check{summary.n_inverted, summary.min_quality, summary.n_curved, {}};
+  MeshCheck check{summary.n_inverted, summary.min_quality, summary.n_curved, {}, {}};
   for (const Bad& bad : summary.worst)
     check.findings.push_back(
         make_finding({mesh.blocks[bad.block], mesh.nodes, moved, plane_normal}, bad));
+  return check;
+}
+
+MeshCheck check_mesh(const Mesh& mesh, std::span<const Vec3> moved, const Enclosure& enclosure) {
+  MeshCheck check = check_mesh(mesh, moved);
+  check.volume_error = enclosure.volume_error(mesh, moved);
+  if (!check.volumes_add_up())
+    check.findings.push_back(
+        {"the volumes of the elements do not add up to what the boundary "
+         "encloses",
+         0, Vec3::Zero(), *check.volume_error, Enclosure::largest_error});
   return check;
 }
 

@@ -4,26 +4,21 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/IterativeLinearSolvers>
 #include <fmt/format.h>
 
 #include "roughmesh/error.hpp"
 
+#include "conjugate_gradients.hpp"
 #include "corners.hpp"
 #include "parallel.hpp"
 
 namespace roughmesh::detail {
 namespace {
 
-constexpr double tolerance = 1e-12;  // relative residual
-constexpr int most_iterations = 10'000;
 constexpr std::size_t rows_per_range = 1024;
 // Six volumes over the cube of the longest edge (two areas over its square), below which a simplex
 // is left out.
 constexpr double flat = 1e-10;
-
-using Solver = Eigen::ConjugateGradient<HarmonicExtension::Matrix, Eigen::Lower | Eigen::Upper,
-                                        Eigen::DiagonalPreconditioner<double>>;
 
 std::size_t n_corners(const Simplex& simplex) { return simplex[3] < 0 ? 3 : 4; }
 
@@ -252,15 +247,19 @@ class Assembly {
   double scale_;
 };
 
-void require_convergence(const Solver& solver) {
-  if (solver.info() == Eigen::Success) return;
+void require_convergence(const Solution& solution, double tolerance) {
+  if (solution.converged) return;
   throw NumericalError(fmt::format(
       "conjugate gradients for the volume stopped after {} iterations at a relative residual of "
       "{:.1e}, above {:.0e}; improve the worst elements of the input mesh",
-      solver.iterations(), solver.error(), tolerance));
+      solution.iterations, solution.residual, tolerance));
 }
 
 }  // namespace
+
+bool is_flat(std::span<const Vec3> nodes, const Simplex& simplex) {
+  return gradients(nodes, simplex).is_flat;
+}
 
 HarmonicExtension::HarmonicExtension(std::span<const Vec3> nodes,
                                      std::span<const Simplex> simplices, const NodeRoles& roles) {
@@ -277,21 +276,16 @@ HarmonicExtension::HarmonicExtension(std::span<const Vec3> nodes,
 }
 
 std::vector<Vec3> HarmonicExtension::extend(std::span<const Vec3> given) const {
-  std::vector<Vec3> result(static_cast<std::size_t>(stiffness_.rows()));
-  if (result.empty()) return result;
-  parallel_for(3, 1, [&](std::size_t axis, std::size_t) {
-    Eigen::VectorXd component(static_cast<Eigen::Index>(given.size()));
-    for (std::size_t i = 0; i < given.size(); ++i) component[i] = given[i][axis];
-    Solver solver;
-    solver.setTolerance(tolerance);
-    solver.setMaxIterations(most_iterations);
-    solver.compute(stiffness_);
-    const Eigen::VectorXd load = -(coupling_ * component);
-    const Eigen::VectorXd solution = solver.solve(load);
-    require_convergence(solver);
-    for (std::size_t i = 0; i < result.size(); ++i) result[i][axis] = solution[i];
+  std::vector<Vec3> load(static_cast<std::size_t>(stiffness_.rows()), Vec3::Zero());
+  parallel_for(load.size(), rows_per_range, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      for (Matrix::InnerIterator entry(coupling_, static_cast<Index>(i)); entry; ++entry)
+        load[i] -= entry.value() * given[entry.col()];
   });
-  return result;
+  const SolveOptions options;
+  Solution solution = solve(stiffness_, load, options);
+  require_convergence(solution, options.tolerance);
+  return std::move(solution.values);
 }
 
 }  // namespace roughmesh::detail

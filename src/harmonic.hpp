@@ -16,6 +16,9 @@ namespace roughmesh::detail {
 /// -1.
 using Simplex = std::array<Index, 4>;
 
+/// So flat that round-off decides on which side it is.
+bool is_flat(std::span<const Vec3> nodes, const Simplex& simplex);
+
 /// What is known about the displacement of each node. A node is unknown, given or, if neither
 /// number is set, stays where it is.
 struct NodeRoles {

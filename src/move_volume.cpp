@@ -2,17 +2,17 @@
 #include "roughmesh/move_volume.hpp"
 
 #include <algorithm>
-#include <cstdint>
 #include <iterator>
 
 #include <fmt/format.h>
 
 #include "roughmesh/displace.hpp"
 
-#include "corners.hpp"
 #include "disjoint_sets.hpp"
 #include "harmonic.hpp"
 #include "messages.hpp"
+#include "plane.hpp"
+#include "repair_volume.hpp"
 #include "second_order.hpp"
 #include "walls.hpp"
 
@@ -25,12 +25,13 @@ struct VolumeMover::Plan {
   // None without elements to deform.
   std::unique_ptr<const detail::HarmonicExtension> extension;
   std::unique_ptr<const detail::Followers> followers;
+  std::unique_ptr<const detail::VolumeRepair> repair;
   std::vector<Index> wall_nodes;
 };
 
 namespace {
 
-using NodeFlags = std::vector<std::uint8_t>;
+using detail::NodeFlags;
 
 std::span<const Index> corners_of(const ElementBlock& block, Index element) {
   return block.element(element).first(static_cast<std::size_t>(n_corners(block.type.shape)));
@@ -88,31 +89,11 @@ void require_movable_elements(const Mesh& mesh, const detail::NodeRoles& roles) 
   }
 }
 
-template <class Visit>
-void for_each_simplex(const ElementBlock& block, Index element, Visit&& visit) {
-  const auto nodes = corners_of(block, element);
-  const std::size_t n = nodes.size();
-  if (n == 3) visit(detail::Simplex{nodes[0], nodes[1], nodes[2], -1});
-  if (block.type.shape == ElementShape::quadrangle)
-    for (std::size_t k = 0; k < n; ++k)
-      visit(detail::Simplex{nodes[k], nodes[(k + 1) % n], nodes[(k + n - 1) % n], -1});
-  auto corners = detail::corner_tetrahedra(block.type.shape);
-  if (block.type.shape == ElementShape::tetrahedron) corners = corners.first(1);
-  for (const auto& [a, b, c, d] : corners)
-    visit(detail::Simplex{nodes[a], nodes[b], nodes[c], nodes[d]});
-}
-
-// A triangle or tetrahedron stands for itself, every other shape for the simplices at its corners.
-std::vector<detail::Simplex> deforming_simplices(const Mesh& mesh, int cell_dimension,
-                                                 const detail::NodeRoles& roles) {
-  std::vector<detail::Simplex> simplices;
-  const auto is_unknown = [&](Index node) { return node >= 0 && roles.unknown[node] >= 0; };
-  for (const ElementBlock& block : mesh.blocks)
-    for (Index e = 0; is_cell(block, cell_dimension) && e < block.size(); ++e)
-      for_each_simplex(block, e, [&](const detail::Simplex& simplex) {
-        if (std::any_of(simplex.begin(), simplex.end(), is_unknown)) simplices.push_back(simplex);
-      });
-  return simplices;
+NodeFlags free_flags(const detail::NodeRoles& roles) {
+  NodeFlags is_free(roles.unknown.size());
+  for (std::size_t node = 0; node < is_free.size(); ++node)
+    is_free[node] = roles.unknown[node] >= 0;
+  return is_free;
 }
 
 detail::Followers make_followers(const Mesh& mesh, int cell_dimension,
@@ -121,6 +102,14 @@ detail::Followers make_followers(const Mesh& mesh, int cell_dimension,
   for (std::size_t node = 0; node < is_settled.size(); ++node)
     if (roles.given[node] >= 0 || roles.unknown[node] >= 0) is_settled[node] = 1;
   return {mesh, cell_dimension, is_settled};
+}
+
+constexpr int most_splits = 2;
+
+// Faces in space have no side on which they are inverted.
+bool can_be_repaired(const Mesh& mesh, int cell_dimension) {
+  return cell_dimension == dimension(mesh) &&
+         (cell_dimension == 3 || detail::fit_plane(mesh).is_planar());
 }
 
 void check_surfaces(const Mesh& mesh, std::span<const Surface> surfaces) {
@@ -146,10 +135,46 @@ void require_finite(std::span<const Vec3> displacements) {
 }  // namespace
 
 std::string_view name(VolumeMethod method) {
-  return method == VolumeMethod::harmonic ? "harmonic" : "none";
+  switch (method) {
+    case VolumeMethod::harmonic:
+      return "harmonic";
+    case VolumeMethod::foldover_free:
+      return "foldover-free";
+    case VolumeMethod::split:
+      return "split";
+    default:
+      return "none";
+  }
 }
 
-VolumeMover::VolumeMover(const Mesh& mesh, std::span<const Surface> surfaces, VolumeMethod method) {
+namespace {
+
+std::vector<Vec3> added(std::span<const Vec3> nodes, std::vector<Vec3> shifts) {
+  for (std::size_t node = 0; node < shifts.size(); ++node) shifts[node] += nodes[node];
+  return shifts;
+}
+
+// Other nodes follow the corners, wherever these went.
+MovedVolume move_interior(const VolumeMover::Plan& plan, std::span<const Vec3> displacements,
+                          std::vector<Vec3> shifts) {
+  const std::vector<Vec3> interior = plan.extension->extend(displacements);
+  for (std::size_t i = 0; i < interior.size(); ++i) shifts[plan.free_nodes[i]] = interior[i];
+  plan.followers->fill(shifts);
+  MovedVolume result{added(plan.nodes, std::move(shifts)), VolumeMethod::harmonic, nullptr};
+  if (!plan.repair) return result;
+  result = plan.repair->mend(std::move(result.nodes));
+  if (result.method == VolumeMethod::harmonic || plan.followers->nodes().empty()) return result;
+  shifts = result.nodes;
+  for (std::size_t node = 0; node < plan.nodes.size(); ++node) shifts[node] -= plan.nodes[node];
+  plan.followers->fill(shifts);
+  for (const Index node : plan.followers->nodes())
+    result.nodes[node] = plan.nodes[node] + shifts[node];
+  return result;
+}
+
+}  // namespace
+
+VolumeMover::VolumeMover(const Mesh& mesh, std::span<const Surface> surfaces, VolumeMethod last) {
   check_surfaces(mesh, surfaces);
   auto plan = std::make_unique<Plan>();
   plan->nodes = mesh.nodes;
@@ -160,16 +185,19 @@ VolumeMover::VolumeMover(const Mesh& mesh, std::span<const Surface> surfaces, Vo
                [&](Index node) { return on_wall[node] != 0; });
 
   const int cell_dimension = surfaces.front().dimension + 1;
-  const bool moves_interior =
-      method == VolumeMethod::harmonic && n_elements(mesh, cell_dimension) > 0;
+  const bool moves_interior = last != VolumeMethod::none && n_elements(mesh, cell_dimension) > 0;
   detail::NodeRoles roles = given_roles(mesh, plan->moved_nodes);
   if (moves_interior) add_unknowns(reached_corners(mesh, cell_dimension, roles, on_wall), roles);
   require_movable_elements(mesh, roles);
   for (Index node = 0; node < mesh.n_nodes(); ++node)
     if (roles.unknown[node] >= 0) plan->free_nodes.push_back(node);
   if (moves_interior) {
+    NodeFlags is_free = free_flags(roles);
     plan->extension = std::make_unique<const detail::HarmonicExtension>(
-        mesh.nodes, deforming_simplices(mesh, cell_dimension, roles), roles);
+        mesh.nodes, detail::deforming_simplices(mesh, cell_dimension, is_free), roles);
+    if (last != VolumeMethod::harmonic && can_be_repaired(mesh, cell_dimension))
+      plan->repair = std::make_unique<const detail::VolumeRepair>(
+          mesh, std::move(is_free), last == VolumeMethod::split ? most_splits : 0);
     plan->followers = std::make_unique<const detail::Followers>(
         make_followers(mesh, cell_dimension, roles, on_wall));
   }
@@ -180,28 +208,21 @@ VolumeMover::~VolumeMover() = default;
 VolumeMover::VolumeMover(VolumeMover&&) noexcept = default;
 VolumeMover& VolumeMover::operator=(VolumeMover&&) noexcept = default;
 
-VolumeMethod VolumeMover::method() const {
-  return plan_->extension ? VolumeMethod::harmonic : VolumeMethod::none;
-}
+bool VolumeMover::moves_interior() const { return plan_->extension != nullptr; }
 
 const std::vector<Index>& VolumeMover::wall_nodes() const { return plan_->wall_nodes; }
 
-std::vector<Vec3> VolumeMover::move(std::span<const Vec3> displacements) const {
+MovedVolume VolumeMover::move(std::span<const Vec3> displacements) const {
   const Plan& plan = *plan_;
   if (displacements.size() != plan.moved_nodes.size())
     throw InputError(fmt::format("{} displacements for {} nodes that move; give one per node",
                                  displacements.size(), plan.moved_nodes.size()));
   require_finite(displacements);
-  std::vector<Vec3> moved(plan.nodes.size(), Vec3::Zero());  // by so much, at first
+  std::vector<Vec3> shifts(plan.nodes.size(), Vec3::Zero());
   for (std::size_t i = 0; i < displacements.size(); ++i)
-    moved[plan.moved_nodes[i]] = displacements[i];
-  if (plan.extension) {
-    const std::vector<Vec3> interior = plan.extension->extend(displacements);
-    for (std::size_t i = 0; i < interior.size(); ++i) moved[plan.free_nodes[i]] = interior[i];
-    plan.followers->fill(moved);
-  }
-  for (std::size_t node = 0; node < moved.size(); ++node) moved[node] += plan.nodes[node];
-  return moved;
+    shifts[plan.moved_nodes[i]] = displacements[i];
+  if (plan.extension) return move_interior(plan, displacements, std::move(shifts));
+  return {added(plan.nodes, std::move(shifts)), VolumeMethod::none, nullptr};
 }
 
 }  // namespace roughmesh

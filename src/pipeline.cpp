@@ -179,18 +179,21 @@ std::string remedy(std::span<const FieldPlan> fields, Index n_wall_nodes) {
 void refuse_invalid(const RoughMesh& rough, const std::string& remedy, Report& report) {
   if (rough.check.valid()) return;
   const Finding& worst = rough.check.findings.front();
-  const std::string found = fmt::format(
+  std::string found = fmt::format(
       "realization {}: {} inverted elements, the worst is element {} ({}) at ({:.6g}, {:.6g}, "
       "{:.6g}) "
       "with scaled Jacobian {:.3g}",
       rough.realization, rough.check.inverted_elements, worst.element, worst.what, worst.place.x(),
       worst.place.y(), worst.place.z(), worst.value);
+  if (rough.check.inverted_elements == 0)
+    found = fmt::format("realization {}: {}: a relative difference of {:.1e}", rough.realization,
+                        worst.what, worst.value);
   if (!report.request.allow_invalid) throw CheckError(found + "; " + remedy);
   report.warnings.push_back(found + "; written because of --allow-invalid");
 }
 
-VolumeMethod volume_method(const RoughenOptions& options) {
-  return options.volume == VolumeChoice::move ? VolumeMethod::harmonic : VolumeMethod::none;
+VolumeMethod last_method(const RoughenOptions& options) {
+  return options.volume == VolumeChoice::move ? VolumeMethod::split : VolumeMethod::none;
 }
 
 /// The stages of one run, in order; each fills in its part of the report.
@@ -201,13 +204,13 @@ class Run {
 
   Report make(const Deliver& deliver) {
     select();
-    const VolumeMover mover = timed(times().volume, [&] {
-      return VolumeMover(mesh_, rough_.surfaces, volume_method(options_));
-    });
+    const VolumeMover mover = timed(
+        times().volume, [&] { return VolumeMover(mesh_, rough_.surfaces, last_method(options_)); });
     fixed_ = detail::fixed_among(rough_, mesh_, moved_nodes(rough_.surfaces));
     n_wall_nodes_ = detail::n_moving(rough_, mesh_, mover.wall_nodes());
     detail::warn_of_walls(report_, n_wall_nodes_);
     quality_before_ = timed(times().check, [&] { return min_quality(mesh_); });
+    enclosure_ = timed(times().check, [&] { return Enclosure(mesh_); });
     prepare_fields();
     RoughMesh rough{.mesh = mesh_};
     rough.normals = at_nodes<Vec3>(
@@ -310,17 +313,28 @@ class Run {
     const auto heights = timed(times().field, [&] { return draw(rough.realization); });
     const std::vector<Vec3> displacements =
         timed(times().displace, [&] { return displacements_of(heights); });
-    rough.mesh.nodes = timed(times().volume, [&] { return mover.move(displacements); });
-    rough.check = timed(times().check, [&] { return check_mesh(mesh_, rough.mesh.nodes); });
+    const MovedVolume moved = timed(times().volume, [&] { return mover.move(displacements); });
+    const Mesh& smooth = moved.split ? *moved.split : mesh_;
+    if (rough.mesh.nodes.size() != smooth.nodes.size()) rough.mesh = smooth;
+    rough.mesh.nodes = moved.nodes;
+    rough.check =
+        timed(times().check, [&] { return check_mesh(smooth, moved.nodes, *enclosure_); });
     refuse_invalid(rough, remedy(rough_.fields, n_wall_nodes_), report_);
     if (report_.realizations.empty()) detail::warn_of_curved_elements(report_, rough.check);
     rough.heights = at_nodes<double>(
         mesh_, rough_.surfaces, [&](std::size_t s) -> const auto& { return heights[s]; }, 0.0);
-    rough.displacements = differences(rough.mesh.nodes, mesh_.nodes);
-    report_.realizations.push_back(describe(rough, mover, heights));
+    rough.displacements = differences(rough.mesh.nodes, smooth.nodes);
+    rough.heights.resize(rough.mesh.nodes.size(), 0);
+    rough.normals.resize(rough.mesh.nodes.size(), Vec3::Zero());
+    if (moved.method > VolumeMethod::harmonic)
+      add_once(report_.citations,
+               {"Garanzha et al. (2021), Foldover-free maps in 50 lines of code, "
+                "doi:10.1145/3450626.3459847"});
+    if (moved.split) detail::warn_of_split(report_, rough.realization, mesh_, *moved.split);
+    report_.realizations.push_back(describe(rough, moved.method, heights));
   }
 
-  RealizationReport describe(const RoughMesh& rough, const VolumeMover& mover,
+  RealizationReport describe(const RoughMesh& rough, VolumeMethod volume_method,
                              const std::vector<std::vector<double>>& heights) const {
     RealizationReport result;
     result.index = rough.realization;
@@ -330,7 +344,7 @@ class Run {
     result.inverted_elements = rough.check.inverted_elements;
     result.min_quality = rough.check.min_quality;
     result.min_quality_before = quality_before_;
-    result.volume_method = mover.method();
+    result.volume_method = volume_method;
     return result;
   }
 
@@ -343,6 +357,7 @@ class Run {
   std::vector<std::size_t> fixed_;      // positions among the moved nodes
   Index n_wall_nodes_ = 0;              // that move
   double quality_before_ = 0;
+  std::optional<Enclosure> enclosure_;
   const Watch& watch_;
   std::optional<std::uint64_t> realization_;  // being made
 };

@@ -159,6 +159,15 @@ void warn_of_curved_elements(Report& report, const MeshCheck& check) {
         check.n_curved));
 }
 
+void warn_of_split(Report& report, std::uint64_t realization, const Mesh& mesh, const Mesh& split) {
+  report.warnings.push_back(fmt::format(
+      "realization {}: edges were split where inverted elements had no node to move: {} nodes and "
+      "{} "
+      "elements more than in the input; groups and entities are kept, comments and data of the "
+      "file are not",
+      realization, split.nodes.size() - mesh.nodes.size(), n_elements(split) - n_elements(mesh)));
+}
+
 void warn_of_walls(Report& report, Index n_nodes) {
   if (n_nodes > 0)
     report.warnings.push_back(fmt::format(

@@ -31,6 +31,9 @@ void warn_of_fields(Report& report);
 /// Elements that were checked at their corners only.
 void warn_of_curved_elements(Report& report, const MeshCheck& check);
 
+/// A realization on more elements than the input has.
+void warn_of_split(Report& report, std::uint64_t realization, const Mesh& mesh, const Mesh& split);
+
 /// Nodes of the surfaces that move although they lie on faces that stay.
 void warn_of_walls(Report& report, Index n_nodes);
 

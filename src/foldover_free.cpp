@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "foldover_free.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include <LBFGS.h>
+
+#include "distortion.hpp"
+
+namespace roughmesh::detail {
+namespace {
+
+// The simplices that can change, on nodes of their own: the free ones first.
+struct Patch {
+  std::vector<Simplex> simplices;
+  std::vector<Index> nodes;
+  Index n_free = 0;
+};
+
+std::span<const Index> corners(const Simplex& simplex) {
+  return std::span(simplex).first(simplex[3] < 0 ? 3 : 4);
+}
+
+bool has_free_corner(const Simplex& simplex, const NodeFlags& is_free) {
+  const auto nodes = corners(simplex);
+  return std::any_of(nodes.begin(), nodes.end(), [&](Index n) { return is_free[n] != 0; });
+}
+
+Patch make_patch(const Simplices& simplices, const NodeFlags& is_free) {
+  Patch patch;
+  for (const Simplex& s : simplices.all)
+    if (has_free_corner(s, is_free) && !is_flat(simplices.rest, s)) patch.simplices.push_back(s);
+  std::vector<Index> number(simplices.rest.size(), -1);
+  for (const Simplex& s : patch.simplices)
+    for (const Index node : corners(s)) number[node] = 0;
+  for (const bool free : {true, false}) {
+    for (std::size_t node = 0; node < number.size(); ++node)
+      if (number[node] >= 0 && (is_free[node] != 0) == free)
+        patch.nodes.push_back(static_cast<Index>(node));
+    if (free) patch.n_free = static_cast<Index>(patch.nodes.size());
+  }
+  for (std::size_t i = 0; i < patch.nodes.size(); ++i)
+    number[patch.nodes[i]] = static_cast<Index>(i);
+  for (Simplex& s : patch.simplices)
+    for (Index& node : s) node = node < 0 ? -1 : number[node];
+  return patch;
+}
+
+// A power of two near the mean length of the edges: coordinates over it lose no bit.
+double unit_of(const Patch& patch, std::span<const Vec3> rest) {
+  double sum = 0;
+  for (const Simplex& s : patch.simplices)
+    sum += (rest[patch.nodes[s[1]]] - rest[patch.nodes[s[0]]]).norm();
+  return std::exp2(std::round(std::log2(sum / static_cast<double>(patch.simplices.size()))));
+}
+
+template <int dim>
+using Frame = Eigen::Matrix<double, dim, 3>;
+
+// Rows: the axes of the coordinates that count.
+template <int dim>
+Frame<dim> frame_of(const std::optional<Vec3>& plane_normal) {
+  Frame<dim> frame = Frame<dim>::Identity();
+  if constexpr (dim == 2) {
+    const Vec3 first = plane_normal->unitOrthogonal();
+    frame.row(0) = first;
+    frame.row(1) = plane_normal->cross(first);
+  }
+  return frame;
+}
+
+template <int dim>
+std::vector<typename Distortion<dim>::Point> in_frame(const Frame<dim>& frame, const Patch& patch,
+                                                      std::span<const Vec3> positions) {
+  std::vector<typename Distortion<dim>::Point> result;
+  result.reserve(patch.nodes.size());
+  for (const Index node : patch.nodes) result.push_back(frame * positions[node]);
+  return result;
+}
+
+// The regular tetrahedron with the mean edge of this one, on the same side as it.
+Eigen::Matrix3d regular(const Eigen::Matrix3d& shape) {
+  double sum = shape.colwise().norm().sum();
+  for (int k = 0; k < 3; ++k) sum += (shape.col((k + 1) % 3) - shape.col(k)).norm();
+  Eigen::Matrix3d unit;
+  unit << 1, 0.5, 0.5, 0, std::sqrt(3.0) / 2, std::sqrt(3.0) / 6, 0, 0, std::sqrt(2.0 / 3);
+  unit.row(2) *= shape.determinant() < 0 ? -1 : 1;
+  return sum / 6 * unit;
+}
+
+template <int dim>
+std::vector<typename Distortion<dim>::Matrix> rest_shapes(const Frame<dim>& frame,
+                                                          const Patch& patch,
+                                                          const Simplices& simplices) {
+  std::vector<typename Distortion<dim>::Matrix> shapes(patch.simplices.size());
+  for (std::size_t t = 0; t < shapes.size(); ++t) {
+    bool is_new = false;
+    for (std::size_t k = 0; k <= dim; ++k) {
+      const Index node = patch.nodes[patch.simplices[t][k]];
+      is_new = is_new || node >= simplices.first_new_node;
+      if (k > 0)
+        shapes[t].col(static_cast<Eigen::Index>(k) - 1) =
+            frame * (simplices.rest[node] - simplices.rest[patch.nodes[patch.simplices[t][0]]]);
+    }
+    if constexpr (dim == 3)
+      if (is_new) shapes[t] = regular(shapes[t]);
+  }
+  return shapes;
+}
+
+template <int dim>
+Distortion<dim> make_distortion(const Frame<dim>& frame, const Patch& patch,
+                                const Simplices& simplices, std::span<const Vec3> positions) {
+  std::vector<typename Distortion<dim>::Corners> corners_of(patch.simplices.size());
+  for (std::size_t t = 0; t < corners_of.size(); ++t)
+    std::copy_n(patch.simplices[t].begin(), dim + 1, corners_of[t].begin());
+  return {rest_shapes<dim>(frame, patch, simplices), std::move(corners_of),
+          in_frame<dim>(frame, patch, positions), patch.n_free};
+}
+
+LBFGSpp::LBFGSParam<double> parameters(const UntangleOptions& options) {
+  LBFGSpp::LBFGSParam<double> result;
+  result.m = 8;
+  result.linesearch = LBFGSpp::LBFGS_LINESEARCH_BACKTRACKING_WOLFE;
+  result.max_iterations = options.most_iterations;
+  result.epsilon = 0;
+  result.epsilon_rel = 1e-10;
+  // Stop where ten iterations gain less than a thousandth.
+  result.past = 10;
+  result.delta = 1e-3;
+  return result;
+}
+
+// One round of L-BFGS. Where its line search fails, which it tells by an exception, it has gone as
+// far as it can.
+template <int dim>
+void descend(Distortion<dim>& distortion, const UntangleOptions& options, Eigen::VectorXd& x) {
+  const auto parameter = parameters(options);
+  LBFGSpp::LBFGSSolver<double> solver(parameter);
+  Eigen::VectorXd start = x, gradient;
+  const double value_at_start = distortion(start, gradient);
+  try {
+    double value = 0;
+    solver.minimize(distortion, x, value);
+  } catch (const std::exception&) {
+    if (!x.allFinite() || !(distortion(x, gradient) <= value_at_start)) x = std::move(start);
+  }
+}
+
+// Eq. 52.
+double epsilon_for(double smallest_determinant) {
+  const double negative = std::min(0.0, smallest_determinant);
+  return std::sqrt(1e-12 + 0.04 * negative * negative);
+}
+
+// A round that starts without inverted simplices keeps them so, and is the last. Rounds in vain
+// tell that there may be no solution.
+template <int dim>
+bool minimize(Distortion<dim>& distortion, const UntangleOptions& options, Eigen::VectorXd& x) {
+  Determinants now = distortion.determinants(x);
+  int in_vain = 0;
+  for (int round = 0; round < options.most_rounds && in_vain < options.most_in_vain; ++round) {
+    if (!std::isfinite(now.smallest)) return false;
+    distortion.set_epsilon(epsilon_for(now.smallest));
+    descend(distortion, options, x);
+    if (now.n_negative == 0) break;
+    const Determinants next = distortion.determinants(x);
+    in_vain = next.n_negative < now.n_negative ? 0 : in_vain + 1;
+    now = next;
+  }
+  return distortion.determinants(x).n_negative == 0;
+}
+
+template <int dim>
+bool untangle_patch(const Patch& patch, const Simplices& simplices, std::vector<Vec3>& positions,
+                    const UntangleOptions& options) {
+  const double unit = unit_of(patch, simplices.rest);
+  const Frame<dim> axes = frame_of<dim>(simplices.plane_normal);
+  Distortion<dim> distortion = make_distortion<dim>(axes / unit, patch, simplices, positions);
+  const Eigen::VectorXd before = distortion.free_points();
+  Eigen::VectorXd x = before;
+  const bool is_valid = minimize(distortion, options, x);
+  for (Index i = 0; i < patch.n_free; ++i) {
+    const Eigen::Index at = static_cast<Eigen::Index>(i) * dim;
+    positions[patch.nodes[i]] += unit * axes.transpose() * (x - before).template segment<dim>(at);
+  }
+  return is_valid;
+}
+
+}  // namespace
+
+bool untangle(const Simplices& simplices, const NodeFlags& is_free, std::vector<Vec3>& positions,
+              const UntangleOptions& options) {
+  const Patch patch = make_patch(simplices, is_free);
+  if (patch.simplices.empty()) return true;
+  return patch.simplices.front()[3] < 0 ? untangle_patch<2>(patch, simplices, positions, options)
+                                        : untangle_patch<3>(patch, simplices, positions, options);
+}
+
+}  // namespace roughmesh::detail
