@@ -162,12 +162,15 @@ std::vector<Vec3> differences(std::span<const Vec3> after, std::span<const Vec3>
   return result;
 }
 
-/// What helps against inverted elements; a finer mesh does not, it makes them smaller.
-std::string remedy(std::span<const FieldPlan> fields, Index n_wall_nodes) {
+/// What helps against inverted elements and surfaces that meet themselves; a finer mesh does not,
+/// it makes elements smaller.
+/// @param lower  what to do with --rms
+std::string remedy(std::span<const FieldPlan> fields, Index n_wall_nodes,
+                   const std::string& lower = "lower --rms") {
   const bool is_smooth = std::all_of(fields.begin(), fields.end(), [](const FieldPlan& field) {
     return field.correlation.autocorrelation().slope_variance().has_value();
   });
-  std::string text = "lower --rms";
+  std::string text = lower;
   text += is_smooth ? " or use a longer --length"
                     : " or take a smoother --acf (slopes of this one grow as the mesh is refined)";
   if (n_wall_nodes > 0)
@@ -188,6 +191,15 @@ void refuse_invalid(const RoughMesh& rough, const std::string& remedy, Report& r
   report.warnings.push_back(found + "; written because of --allow-invalid");
 }
 
+void refuse_surface(const SurfaceCheck& check, std::uint64_t realization, const std::string& remedy,
+                    Report& report) {
+  if (check.valid()) return;
+  const std::string found =
+      fmt::format("realization {}: {}", realization, detail::describe_defects(check));
+  if (!report.request.allow_invalid) throw CheckError(found + "; " + remedy);
+  report.warnings.push_back(found + "; written because of --allow-invalid");
+}
+
 VolumeMethod volume_method(const RoughenOptions& options) {
   return options.volume == VolumeChoice::move ? VolumeMethod::harmonic : VolumeMethod::none;
 }
@@ -203,10 +215,12 @@ class Run {
     const VolumeMover mover = timed(times().volume, [&] {
       return VolumeMover(mesh_, rough_.surfaces, volume_method(options_));
     });
-    fixed_ = detail::fixed_among(rough_, mesh_, moved_nodes(rough_.surfaces));
+    moved_ = moved_nodes(rough_.surfaces);
+    fixed_ = detail::fixed_among(rough_, mesh_, moved_);
     n_wall_nodes_ = detail::n_moving(rough_, mesh_, mover.wall_nodes());
     detail::warn_of_walls(report_, n_wall_nodes_);
     quality_before_ = timed(times().check, [&] { return min_quality(mesh_); });
+    prepare_surface_check();
     prepare_fields();
     RoughMesh rough{.mesh = mesh_};
     rough.normals = at_nodes<Vec3>(
@@ -248,6 +262,18 @@ class Run {
       detail::warn_of_surface(report_, surface, rough_.plans[s].request);
       detail::warn_of_scale(report_, described, rough_.plans[s].request);
     }
+  }
+
+  void prepare_surface_check() {
+    timed(times().check, [&] {
+      checker_.emplace(mesh_, rough_.surfaces);
+      for (std::size_t s = 0; s < rough_.surfaces.size(); ++s) {
+        const double height =
+            report_.surfaces[s].resolution.expected_max_height * rough_.plans[s].request.rms;
+        if (const auto wall = checker_->thinnest_wall(rough_.surfaces[s], height))
+          detail::warn_of_thin_wall(report_, rough_.surfaces[s], rough_.plans[s].request, *wall);
+      }
+    });
   }
 
   void prepare_fields() {
@@ -300,10 +326,23 @@ class Run {
     return displacements;
   }
 
+  /// The surface alone, before anything follows it.
+  SurfaceCheck check_surfaces(const std::vector<Vec3>& displacements) const {
+    std::vector<Vec3> moved = mesh_.nodes;
+    for (std::size_t i = 0; i < moved_.size(); ++i) moved[moved_[i]] += displacements[i];
+    return checker_->check(moved);
+  }
+
   void realize(const VolumeMover& mover, RoughMesh& rough) {
     const auto heights = timed(times().field, [&] { return draw(rough.realization); });
     const std::vector<Vec3> displacements =
         timed(times().displace, [&] { return displacements_of(heights); });
+    rough.surface_check = timed(times().check, [&] { return check_surfaces(displacements); });
+    detail::warn_of_input_intersections(report_, rough.surface_check);
+    refuse_surface(rough.surface_check, rough.realization,
+                   remedy(rough_.fields, n_wall_nodes_,
+                          detail::lower_rms(rough.surface_check, report_.request)),
+                   report_);
     rough.mesh.nodes = timed(times().volume, [&] { return mover.move(displacements); });
     rough.check = timed(times().check, [&] { return check_mesh(mesh_, rough.mesh.nodes); });
     refuse_invalid(rough, remedy(rough_.fields, n_wall_nodes_), report_);
@@ -324,6 +363,7 @@ class Run {
     result.inverted_elements = rough.check.inverted_elements;
     result.min_quality = rough.check.min_quality;
     result.min_quality_before = quality_before_;
+    result.self_intersections = rough.surface_check.self_intersections;
     result.volume_method = mover.method();
     return result;
   }
@@ -334,8 +374,10 @@ class Run {
   RoughSurfaces rough_;
   std::vector<SqTarget> targets_;       // one for each surface
   std::vector<FieldSampler> samplers_;  // one for each field
+  std::vector<Index> moved_;            // nodes of all surfaces
   std::vector<std::size_t> fixed_;      // positions among the moved nodes
-  Index n_wall_nodes_ = 0;              // that move
+  std::optional<SurfaceChecker> checker_;
+  Index n_wall_nodes_ = 0;  // that move
   double quality_before_ = 0;
   const Watch& watch_;
   std::optional<std::uint64_t> realization_;  // being made
