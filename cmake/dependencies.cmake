@@ -6,6 +6,8 @@ find_package(hwy REQUIRED CONFIG)
 find_package(nlohmann_json REQUIRED)
 find_path(TOMLPLUSPLUS_INCLUDE_DIR toml++/toml.h REQUIRED)
 find_path(RANDOM123_INCLUDE_DIR Random123/philox.h REQUIRED)
+find_path(CGAL_INCLUDE_DIR CGAL/version.h REQUIRED)
+find_path(BOOST_INCLUDE_DIR boost/version.hpp REQUIRED)
 find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)
 find_path(LBFGSPP_INCLUDE_DIR LBFGS.h REQUIRED)
 find_path(LAPACKE_INCLUDE_DIR lapacke.h REQUIRED)
@@ -18,7 +20,8 @@ find_path(OPENBLAS_INCLUDE_DIR cblas.h PATH_SUFFIXES openblas REQUIRED)
 # Seen by the project's own sources only; the public headers need Eigen and nothing else.
 add_library(roughmesh_private_dependencies INTERFACE)
 target_include_directories(roughmesh_private_dependencies SYSTEM INTERFACE
-  ${RANDOM123_INCLUDE_DIR} ${XXHASH_INCLUDE_DIR} ${TOMLPLUSPLUS_INCLUDE_DIR} ${LAPACKE_INCLUDE_DIR} ${OPENBLAS_INCLUDE_DIR} ${MUPARSER_INCLUDE_DIR} ${LBFGSPP_INCLUDE_DIR})
+  ${RANDOM123_INCLUDE_DIR} ${XXHASH_INCLUDE_DIR} ${TOMLPLUSPLUS_INCLUDE_DIR} ${LAPACKE_INCLUDE_DIR} ${OPENBLAS_INCLUDE_DIR} ${MUPARSER_INCLUDE_DIR}
+  ${LBFGSPP_INCLUDE_DIR} ${CGAL_INCLUDE_DIR} ${BOOST_INCLUDE_DIR})
 target_link_libraries(roughmesh_private_dependencies INTERFACE
   TBB::tbb fmt::fmt hwy::hwy nlohmann_json::nlohmann_json ${LAPACKE_LIBRARY} ${OPENBLAS_LIBRARY} ${MUPARSER_LIBRARY})
 

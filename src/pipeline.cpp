@@ -163,12 +163,15 @@ std::vector<Vec3> differences(std::span<const Vec3> after, std::span<const Vec3>
   return result;
 }
 
-/// What helps against inverted elements; a finer mesh does not, it makes them smaller.
-std::string remedy(std::span<const FieldPlan> fields, Index n_wall_nodes) {
+/// What helps against inverted elements and surfaces that meet themselves; a finer mesh does not,
+/// it makes elements smaller.
+/// @param lower  what to do with --rms
+std::string remedy(std::span<const FieldPlan> fields, Index n_wall_nodes,
+                   const std::string& lower = "lower --rms") {
   const bool is_smooth = std::all_of(fields.begin(), fields.end(), [](const FieldPlan& field) {
     return field.correlation.autocorrelation().slope_variance().has_value();
   });
-  std::string text = "lower --rms";
+  std::string text = lower;
   text += is_smooth ? " or use a longer --length"
                     : " or take a smoother --acf (slopes of this one grow as the mesh is refined)";
   if (n_wall_nodes > 0)
@@ -192,6 +195,15 @@ void refuse_invalid(const RoughMesh& rough, const std::string& remedy, Report& r
   report.warnings.push_back(found + "; written because of --allow-invalid");
 }
 
+void refuse_surface(const SurfaceCheck& check, std::uint64_t realization, const std::string& remedy,
+                    Report& report) {
+  if (check.valid()) return;
+  const std::string found =
+      fmt::format("realization {}: {}", realization, detail::describe_defects(check));
+  if (!report.request.allow_invalid) throw CheckError(found + "; " + remedy);
+  report.warnings.push_back(found + "; written because of --allow-invalid");
+}
+
 VolumeMethod last_method(const RoughenOptions& options) {
   return options.volume == VolumeChoice::move ? VolumeMethod::split : VolumeMethod::none;
 }
@@ -206,11 +218,13 @@ class Run {
     select();
     const VolumeMover mover = timed(
         times().volume, [&] { return VolumeMover(mesh_, rough_.surfaces, last_method(options_)); });
-    fixed_ = detail::fixed_among(rough_, mesh_, moved_nodes(rough_.surfaces));
+    moved_ = moved_nodes(rough_.surfaces);
+    fixed_ = detail::fixed_among(rough_, mesh_, moved_);
     n_wall_nodes_ = detail::n_moving(rough_, mesh_, mover.wall_nodes());
     detail::warn_of_walls(report_, n_wall_nodes_);
     quality_before_ = timed(times().check, [&] { return min_quality(mesh_); });
     enclosure_ = timed(times().check, [&] { return Enclosure(mesh_); });
+    prepare_surface_check();
     prepare_fields();
     RoughMesh rough{.mesh = mesh_};
     rough.normals = at_nodes<Vec3>(
@@ -253,6 +267,18 @@ class Run {
       detail::warn_of_period(report_, surface, rough_.plans[s].request);
       detail::warn_of_scale(report_, described, rough_.plans[s].request);
     }
+  }
+
+  void prepare_surface_check() {
+    timed(times().check, [&] {
+      checker_.emplace(mesh_, rough_.surfaces);
+      for (std::size_t s = 0; s < rough_.surfaces.size(); ++s) {
+        const double height =
+            report_.surfaces[s].resolution.expected_max_height * rough_.plans[s].request.rms;
+        if (const auto wall = checker_->thinnest_wall(rough_.surfaces[s], height))
+          detail::warn_of_thin_wall(report_, rough_.surfaces[s], rough_.plans[s].request, *wall);
+      }
+    });
   }
 
   void prepare_fields() {
@@ -309,10 +335,23 @@ class Run {
     return displacements;
   }
 
+  /// The surface alone, before anything follows it.
+  SurfaceCheck check_surfaces(const std::vector<Vec3>& displacements) const {
+    std::vector<Vec3> moved = mesh_.nodes;
+    for (std::size_t i = 0; i < moved_.size(); ++i) moved[moved_[i]] += displacements[i];
+    return checker_->check(moved);
+  }
+
   void realize(const VolumeMover& mover, RoughMesh& rough) {
     const auto heights = timed(times().field, [&] { return draw(rough.realization); });
     const std::vector<Vec3> displacements =
         timed(times().displace, [&] { return displacements_of(heights); });
+    rough.surface_check = timed(times().check, [&] { return check_surfaces(displacements); });
+    detail::warn_of_input_intersections(report_, rough.surface_check);
+    refuse_surface(rough.surface_check, rough.realization,
+                   remedy(rough_.fields, n_wall_nodes_,
+                          detail::lower_rms(rough.surface_check, report_.request)),
+                   report_);
     const MovedVolume moved = timed(times().volume, [&] { return mover.move(displacements); });
     const Mesh& smooth = moved.split ? *moved.split : mesh_;
     if (rough.mesh.nodes.size() != smooth.nodes.size()) rough.mesh = smooth;
@@ -345,6 +384,7 @@ class Run {
     result.min_quality = rough.check.min_quality;
     result.min_quality_before = quality_before_;
     result.volume_method = volume_method;
+    result.self_intersections = rough.surface_check.self_intersections;
     return result;
   }
 
@@ -354,8 +394,10 @@ class Run {
   RoughSurfaces rough_;
   std::vector<SqTarget> targets_;       // one for each surface
   std::vector<FieldSampler> samplers_;  // one for each field
+  std::vector<Index> moved_;            // nodes of all surfaces
   std::vector<std::size_t> fixed_;      // positions among the moved nodes
-  Index n_wall_nodes_ = 0;              // that move
+  std::optional<SurfaceChecker> checker_;
+  Index n_wall_nodes_ = 0;  // that move
   double quality_before_ = 0;
   std::optional<Enclosure> enclosure_;
   const Watch& watch_;

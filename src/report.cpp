@@ -124,7 +124,7 @@ ordered_json realization_json(const RealizationReport& r) {
   object.update({{"inverted_elements", r.inverted_elements},
                  {"min_quality", number(r.min_quality)},
                  {"min_quality_before", number(r.min_quality_before)},
-                 {"self_intersections", optional(r.self_intersections)},
+                 {"self_intersections", r.self_intersections},
                  {"volume_method", name(r.volume_method)}});
   if (r.surfaces.size() < 2) return object;
   for (const SurfaceStatistics& surface : r.surfaces)

@@ -100,7 +100,7 @@ void append_single_faces(const Mesh& mesh, std::span<const FaceRef> bucket,
 CellFace cell_face(const ElementBlock& block, Index element, std::size_t face) {
   const LocalFace& local = element_faces(block.type)[face];
   const auto nodes = block.element(element);
-  CellFace result{local.type, {}};
+  CellFace result{local.type, {}, block.tags[element]};
   for (int k = 0; k < local.type.n_nodes; ++k) result.nodes[k] = nodes[local.nodes[k]];
   return result;
 }

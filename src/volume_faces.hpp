@@ -16,6 +16,7 @@ namespace roughmesh::detail {
 struct CellFace {
   ElementType type;  ///< of order 1 for a side of an element of order above 2
   std::array<Index, most_face_nodes> nodes{};
+  Tag element = 0;  ///< number in the file of the element it is a side of
 
   std::span<const Index> corners() const {
     return {nodes.data(), static_cast<std::size_t>(n_corners(type.shape))};

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "messages.hpp"
+
 namespace roughmesh::detail {
 namespace {
 
@@ -16,6 +18,13 @@ void warn(Report& report, const std::vector<std::string>& groups, const std::str
       is_alone ? text : fmt::format("surface {}: {}", fmt::join(groups, ", "), text);
   if (std::find(report.warnings.begin(), report.warnings.end(), warning) == report.warnings.end())
     report.warnings.push_back(std::move(warning));
+}
+
+/// The largest number of two digits that is not above.
+double two_digits_below(double value) {
+  if (!(value > 0)) return 0;
+  const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
+  return std::floor(value / unit) * unit;
 }
 
 /// What a surface is made of.
@@ -175,6 +184,57 @@ void warn_of_walls(Report& report, Index n_nodes) {
         "normals of the rough surface while the other nodes of those faces stay, so elements there "
         "invert first; --fade lets the roughness end before",
         n_nodes));
+}
+
+void warn_of_thin_wall(Report& report, const Surface& surface, const Roughness& request,
+                       const ThinWall& wall) {
+  warn(report, surface.groups,
+       fmt::format("the {} at {} is {:.3g} thick (up to element {}), which heights to be expected "
+                   "would close; --rms {:.2g} keeps it open (estimated)",
+                   wall.is_gap ? "gap" : "wall", place(wall.place), wall.distance, wall.element,
+                   two_digits_below(wall.passing_share * request.rms)));
+}
+
+void warn_of_input_intersections(Report& report, const SurfaceCheck& check) {
+  std::vector<std::string> warnings;
+  if (check.input_intersections > 0)
+    warnings.push_back(
+        fmt::format("{} pairs of faces intersect in the input already, and are not counted as self-"
+                    "intersections; mend the mesh if your solver needs a surface that does not "
+                    "intersect itself",
+                    check.input_intersections));
+  if (!check.is_complete)
+    warnings.emplace_back(
+        "so many faces lie upon each other that the search for self-intersections ended early: "
+        "there may be more; mend the mesh or lower --rms");
+  for (std::string& warning : warnings)
+    if (std::find(report.warnings.begin(), report.warnings.end(), warning) == report.warnings.end())
+      report.warnings.push_back(std::move(warning));
+}
+
+std::string describe_defects(const SurfaceCheck& check) {
+  std::vector<std::string> counts;
+  const auto add = [&](std::int64_t n, const char* what) {
+    if (n > 0) counts.push_back(fmt::format("{} {}", n, what));
+  };
+  add(check.self_intersections, "pairs of faces that intersect");
+  add(check.folded_faces, "folded faces");
+  add(check.collapsed_faces, "collapsed faces");
+  add(check.closed_walls, "points beyond the other side of a thin wall or gap");
+  const SurfaceFinding& worst = check.findings.front();
+  return fmt::format("the rough surface has {}{}; the worst: {} at {}, where nodes moved by {:.3g}",
+                     check.is_complete ? "" : "at least ", fmt::join(counts, ", "), worst.what,
+                     place(worst.place), worst.height);
+}
+
+std::string lower_rms(const SurfaceCheck& check, const RoughenOptions& request) {
+  if (check.valid()) return "lower --rms";
+  const double share = check.findings.front().passing_share;
+  if (request.surfaces.size() > 1)
+    return fmt::format("lower every --rms to about {:.2g} % (estimated)",
+                       two_digits_below(100 * share));
+  return fmt::format("lower --rms to about {:.2g} (estimated)",
+                     two_digits_below(share * request.surfaces.front().rms));
 }
 
 }  // namespace roughmesh::detail

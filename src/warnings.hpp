@@ -2,6 +2,8 @@
 // What a run tells its user without being asked: one line each, into report.warnings.
 #pragma once
 
+#include <string>
+
 #include "roughmesh/check.hpp"
 #include "roughmesh/mesh.hpp"
 #include "roughmesh/move_volume.hpp"
@@ -36,5 +38,18 @@ void warn_of_split(Report& report, std::uint64_t realization, const Mesh& mesh, 
 
 /// Nodes of the surfaces that move although they lie on faces that stay.
 void warn_of_walls(Report& report, Index n_nodes);
+
+/// A wall or gap that heights to be expected may close.
+void warn_of_thin_wall(Report& report, const Surface& surface, const Roughness& request,
+                       const ThinWall& wall);
+
+/// Surfaces that intersect themselves without any roughness, and checks that ended early. Once.
+void warn_of_input_intersections(Report& report, const SurfaceCheck& check);
+
+/// What is wrong with a rough surface, how often, and the worst place: part of a line.
+std::string describe_defects(const SurfaceCheck& check);
+
+/// "lower --rms to about ..." so that the worst place would pass, rounded down to two digits.
+std::string lower_rms(const SurfaceCheck& check, const RoughenOptions& request);
 
 }  // namespace roughmesh::detail

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Is a moved mesh still valid? Findings with place, value and limit.
+// Is a moved mesh still valid? Its surface first, then its elements: findings with place and limit.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "roughmesh/mesh.hpp"
+#include "roughmesh/surface.hpp"
 
 namespace roughmesh {
 
@@ -78,5 +79,87 @@ MeshCheck check_mesh(const Mesh& mesh, std::span<const Vec3> moved);
 
 /// The same, and that volumes add up; the last finding tells if they do not.
 MeshCheck check_mesh(const Mesh& mesh, std::span<const Vec3> moved, const Enclosure& enclosure);
+
+enum class SurfaceDefect : std::uint8_t {
+  intersection,  ///< of two faces
+  folded,        ///< a face turned by more than 90 degrees
+  collapsed,     ///< a face without area left
+  closed_wall    ///< two opposite sheets have changed places
+};
+
+/// What is wrong with a moved surface in one place.
+struct SurfaceFinding {
+  SurfaceDefect defect = SurfaceDefect::intersection;
+  std::string what;               ///< "triangle 7 intersects triangle 12"
+  std::array<Tag, 2> elements{};  ///< numbers in the file, ascending; of one element (0, number)
+  Vec3 place = Vec3::Zero();      ///< in the moved mesh: mean of the middles of the faces
+  double height = 0;              ///< how far the farthest of their nodes has moved
+  /// Estimate of the largest share of all displacements at which these faces would pass: where
+  /// bisection between none and all of them finds them to fail first.
+  double passing_share = 0;
+};
+
+struct SurfaceCheck {
+  std::int64_t self_intersections = 0;   ///< pairs of faces that intersect and did not in the input
+  std::int64_t input_intersections = 0;  ///< pairs of faces that intersect as they did in the input
+  std::int64_t folded_faces = 0;
+  std::int64_t collapsed_faces = 0;
+  /// Points that passed the opposite sheet, which no intersection tells of where it is all of them.
+  std::int64_t closed_walls = 0;
+  /// False: there are more intersections than were looked for; numbers of pairs are "at least".
+  bool is_complete = true;
+  std::vector<SurfaceFinding> findings;  ///< smallest passing_share first, at most 10
+
+  bool valid() const { return findings.empty(); }
+};
+
+/// Where a surface is closer to its other side than heights may be.
+struct ThinWall {
+  Vec3 place = Vec3::Zero();  ///< point of the surface
+  double distance = 0;        ///< along the normal, to the opposite sheet
+  bool is_gap = false;        ///< the sheet is in front of the surface, not behind it
+  Tag element = 0;            ///< of the opposite sheet: number in the file
+  /// Over that of the heights that would just close it, which come from both sides where both are
+  /// rough.
+  double passing_share = 0;
+};
+
+/// Looks at all faces of a mesh that could meet its rough surfaces, prepared once: selected and
+/// unselected elements of their dimension and the boundary of those above; lines for curves of a
+/// planar mesh. Quadrangles are the triangles of both their splittings; elements of order 2 the
+/// facets of docs/math.md, eq. 38; higher orders straight. Nodes at one place in the input that
+/// still are at one place after a motion are one point, so that a crack or a contact is none of its
+/// findings unless its sides come apart.
+class SurfaceChecker {
+ public:
+  /// @param surfaces  one or more of this mesh, of one dimension
+  /// @throws InputError  no surface
+  SurfaceChecker(const Mesh& mesh, std::span<const Surface> surfaces);
+  ~SurfaceChecker();
+  SurfaceChecker(SurfaceChecker&&) noexcept;
+  SurfaceChecker& operator=(SurfaceChecker&&) noexcept;
+
+  /// Signs are exact: faces intersect if they have a place in common, as numbers, that is no corner
+  /// or edge of both. Only faces with a node that moved are looked at. All that is found is the
+  /// same on any number of threads.
+  /// @param moved  n_nodes positions; those of the interior do not matter
+  /// @throws NumericalError  a coordinate that is not finite
+  SurfaceCheck check(std::span<const Vec3> moved) const;
+
+  /// The thinnest place of the walls behind and gaps before a surface, relative to these heights,
+  /// by rays from its points (some 10^5 of a larger surface) along both normals in the input to
+  /// sheets that lean by at most 60 degrees. None where heights close none.
+  /// @param height  to be expected on every rough surface
+  std::optional<ThinWall> thinnest_wall(const Surface& surface, double height) const;
+
+  struct Plan;  ///< the faces and a hierarchy of boxes; defined by the source
+
+ private:
+  std::unique_ptr<const Plan> plan_;
+};
+
+/// One check of a mesh.
+SurfaceCheck check_surface(const Mesh& mesh, std::span<const Surface> surfaces,
+                           std::span<const Vec3> moved);
 
 }  // namespace roughmesh

@@ -21,6 +21,7 @@ namespace roughmesh {
 struct RoughMesh {
   std::uint64_t realization = 0;
   Mesh mesh = {};  ///< the input with moved nodes
+  SurfaceCheck surface_check = {};
   MeshCheck check = {};
   std::vector<double> heights = {};      ///< one per node of the mesh; 0 off the surface
   std::vector<Vec3> normals = {};        ///< one per node of the mesh; zero off the surface
@@ -45,8 +46,8 @@ using Watch = std::function<void(const Progress& progress)>;
 /// of threads of the whole process while it runs: not for two callers at once.
 ///
 /// @throws InputError      options or mesh that cannot be roughened
-/// @throws CheckError      a realization with inverted elements, unless options.allow_invalid; it
-///                         is not delivered, earlier ones were
+/// @throws CheckError      a realization whose surface meets itself or with inverted elements,
+///                         unless options.allow_invalid; it is not delivered, earlier ones were
 /// @throws NumericalError  a solver did not converge
 Report roughen(const Mesh& mesh, const RoughenOptions& options, const Deliver& deliver,
                const Watch& watch = {});

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "checked_faces.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+#include "coincident.hpp"
+#include "element_nodes.hpp"
+#include "morton.hpp"
+#include "parallel.hpp"
+#include "surface_faces.hpp"
+#include "volume_faces.hpp"
+
+namespace roughmesh::detail {
+namespace {
+
+constexpr double same_place = 1e-9;  // of the extent, as for the points of a surface
+
+struct Face {
+  std::array<Index, 4> nodes = {-1, -1, -1, -1};
+  FaceSource source;
+
+  std::span<const Index> corners() const {
+    const std::size_t n = nodes[2] < 0 ? 2 : nodes[3] < 0 ? 3 : 4;
+    return std::span(nodes).first(n);
+  }
+};
+
+void add_facets(const ElementType& type, std::span<const Index> nodes, const FaceSource& source,
+                std::vector<Face>& faces) {
+  for (const std::vector<int>& facet : facets(type)) {
+    Face face{{-1, -1, -1, -1}, source};
+    for (std::size_t k = 0; k < facet.size(); ++k) face.nodes[k] = nodes[facet[k]];
+    faces.push_back(face);
+  }
+}
+
+std::vector<Face> faces_of(const Mesh& mesh, int face_dimension) {
+  std::vector<Face> faces;
+  for (const ElementBlock& block : mesh.blocks)
+    for (Index e = 0; dimension(block.type.shape) == face_dimension && e < block.size(); ++e)
+      add_facets(block.type, block.element(e), {block.tags[e], block.type.shape, false}, faces);
+  for (const CellFace& side : boundary_faces(mesh, face_dimension + 1))
+    add_facets(side.type, side.all(), {side.element, side.type.shape, true}, faces);
+  return faces;
+}
+
+// Elements of several groups, which a file repeats, and sides that are elements as well: of faces
+// on the same nodes only the first stays.
+void drop_repetitions(std::vector<Face>& faces) {
+  struct Entry {
+    FaceKey key;
+    std::size_t face;
+  };
+  std::vector<Entry> entries;
+  entries.reserve(faces.size());
+  for (std::size_t f = 0; f < faces.size(); ++f)
+    entries.push_back({face_key(faces[f].corners()), f});
+  parallel_sort(std::span(entries), [](const Entry& a, const Entry& b) {
+    return a.key != b.key ? a.key < b.key : a.face < b.face;
+  });
+  std::vector<std::uint8_t> is_repeated(faces.size(), 0);
+  for (std::size_t i = 1; i < entries.size(); ++i)
+    is_repeated[entries[i].face] = entries[i].key == entries[i - 1].key;
+  std::size_t n_kept = 0;
+  for (std::size_t f = 0; f < faces.size(); ++f)
+    if (!is_repeated[f]) faces[n_kept++] = faces[f];
+  faces.resize(n_kept);
+}
+
+std::vector<Index> along_curve(const std::vector<Face>& faces, const Mesh& mesh) {
+  std::vector<Vec3> middles;
+  middles.reserve(faces.size());
+  for (const Face& face : faces) {
+    Vec3 sum = Vec3::Zero();
+    const auto corners = face.corners();
+    for (const Index node : corners) sum += mesh.nodes[node] / static_cast<double>(corners.size());
+    middles.push_back(sum);
+  }
+  return morton_order(middles);
+}
+
+void add_face(const Face& face, std::vector<Index>& point_of_node, CheckedFaces& result) {
+  std::array<Index, 4> points = {-1, -1, -1, -1};
+  for (std::size_t k = 0; k < face.corners().size(); ++k) {
+    Index& point = point_of_node[face.nodes[k]];
+    if (point < 0) {
+      point = static_cast<Index>(result.nodes.size());
+      result.nodes.push_back(face.nodes[k]);
+    }
+    points[k] = point;
+  }
+  result.corners.push_back(points);
+  result.sources.push_back(face.source);
+}
+
+std::vector<Index> join(std::span<const Vec3> places) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : places) box.extend(x);
+  const double step = std::max(same_place * box.sizes().norm(), std::numeric_limits<double>::min());
+  std::vector<Vec3> rounded;
+  rounded.reserve(places.size());
+  for (const Vec3& x : places)
+    rounded.emplace_back(((x - box.min()) / step + Vec3::Constant(0.5)).array().floor());
+  return first_at_each_position(rounded);
+}
+
+void add_facets(CheckedFaces& faces) {
+  const auto are_one = [&](Index a, Index b) { return faces.joined[a] == faces.joined[b]; };
+  const auto add = [&](std::size_t face, Index a, Index b, Index c) {
+    const bool is_segment = b == c;
+    if (are_one(a, b) || are_one(a, c) || (!is_segment && are_one(b, c))) return;
+    faces.facets.push_back({a, b, c});
+    faces.face_of_facet.push_back(static_cast<Index>(face));
+  };
+  for (std::size_t f = 0; f < faces.corners.size(); ++f) {
+    const auto [a, b, c, d] = faces.corners[f];
+    faces.first_facet.push_back(static_cast<Index>(faces.facets.size()));
+    add(f, a, b, c < 0 ? b : c);
+    if (d < 0) continue;
+    add(f, a, c, d);
+    add(f, a, b, d);
+    add(f, b, c, d);
+  }
+  faces.first_facet.push_back(static_cast<Index>(faces.facets.size()));
+}
+
+}  // namespace
+
+CheckedFaces collect_faces(const Mesh& mesh, int dimension) {
+  std::vector<Face> faces = faces_of(mesh, dimension);
+  drop_repetitions(faces);
+  CheckedFaces result;
+  result.dimension = dimension;
+  std::vector<Index> point_of_node(mesh.nodes.size(), -1);
+  for (const Index f : along_curve(faces, mesh)) add_face(faces[f], point_of_node, result);
+  for (const Index node : result.nodes) result.before.push_back(mesh.nodes[node]);
+  result.joined = join(result.before);
+  add_facets(result);
+  return result;
+}
+
+// Points of one place in the input form few groups that move together, mostly one.
+std::vector<Index> joined_after(const CheckedFaces& faces, std::span<const Vec3> after) {
+  constexpr std::size_t most_groups = 64;  // a file whose points are all at one place ends as well
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : faces.before) box.extend(x);
+  const double tolerance = 2 * same_place * box.sizes().norm();
+  const auto move_together = [&](Index i, Index j) {
+    const Vec3 apart = (after[i] - after[j]) - (faces.before[i] - faces.before[j]);
+    return apart.cwiseAbs().maxCoeff() <= tolerance;
+  };
+  std::vector<Index> result(faces.nodes.size());
+  std::map<Index, std::vector<Index>> groups;  // the first of each, by the first of their place
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const Index self = static_cast<Index>(i), first = faces.joined[i];
+    result[i] = self;
+    if (first == self) continue;
+    auto& leaders = groups.try_emplace(first, std::vector<Index>{first}).first->second;
+    const auto leader = std::find_if(leaders.begin(), leaders.end(),
+                                     [&](Index other) { return move_together(self, other); });
+    if (leader != leaders.end())
+      result[i] = *leader;
+    else if (leaders.size() < most_groups)
+      leaders.push_back(self);
+  }
+  return result;
+}
+
+}  // namespace roughmesh::detail
