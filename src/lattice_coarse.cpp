@@ -147,7 +147,7 @@ class CoarseLevels::Descent {
   void visit(SortedPlaces::Range range, int stage, const Values* parent) const {
     const Vec3& place = places_.places()[range.first];
     const Cell corner = levels_.cell_of(place, stage);
-    Values values(levels_.n_values(), 0.0);
+    Values values(levels_.n_values() + tensor_lanes - 1, 0.0);  // as interpolate() reads them
     if (parent != nullptr)
       add_parent(*parent, corner, levels_.cell_of(place, stage + 1), stage, values);
     for (std::size_t k = 0; k < levels_.levels_.size(); ++k)
