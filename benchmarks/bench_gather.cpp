@@ -20,6 +20,7 @@
 
 #include "lattice_axis.hpp"
 #include "lattice_gather.hpp"
+#include "lattice_level.hpp"
 #include "lattice_space.hpp"
 #include "peak_rate.hpp"
 #include "sphere_points.hpp"
@@ -32,8 +33,6 @@ constexpr Index n_points = 1'000'000;
 constexpr double tolerance = 1e-4;
 constexpr double length_over_spacing = 2.5;
 constexpr int samples = 9;
-constexpr double cell_points =
-    24;                           // edge of the cells, in lattice spacings, as in lattice_level.cpp
 constexpr int repetitions = 200;  // of the loop
 constexpr int trials = 5;
 
@@ -64,7 +63,7 @@ class Patch {
   Patch(const detail::SortedPlaces& sorted, double length, const detail::KernelWidth& width) {
     const detail::LatticeAxis axis(length, width);
     axes_.fill(axis);
-    const auto [first, end] = fullest_cell(sorted, cell_points / axis.inverse_spacing());
+    const auto [first, end] = fullest_cell(sorted, detail::cell_points(3) / axis.inverse_spacing());
     places_.assign(&sorted.places()[first], &sorted.places()[first] + (end - first));
     for (std::uint32_t i = 0; i < places_.size(); ++i) members_.push_back(i);
     heights_.resize(places_.size());
@@ -93,6 +92,7 @@ class Patch {
             return x[static_cast<int>(a)] < y[static_cast<int>(a)];
           });
       box_.first[a] = axes_[a].first_point((*low)[static_cast<int>(a)]);
+      if (a == 2) box_.first[a] = detail::first_of_column(box_.first[a]);
       box_.size[a] =
           axes_[a].first_point((*high)[static_cast<int>(a)]) + axes_[a].n_points() - box_.first[a];
     }

@@ -19,15 +19,6 @@
 namespace roughmesh::detail {
 namespace {
 
-constexpr double polynomial_share = 0.1;  // of the lattices' error, where levels are coarse
-
-// Levels at least this smooth, in typical distances of neighbours, are summed from coarse to fine:
-// then a cell has enough places to pay for its nodes.
-constexpr double coarse_distance = 10;
-
-// Sizes of cells. A number that depended on the places would make heights depend on them.
-constexpr int n_coarse_stages = 12;
-
 constexpr double smallest_tolerance = 1e-8;
 constexpr double bytes_per_point = 100;
 
@@ -108,7 +99,7 @@ class LatticeField final : public FieldMethod {
     lattice.nugget = mean_nugget();
     lattice.lost_variance = lost_variance_;
     lattice.same_on_other_meshes =
-        (is_cut_ && !has_enlarged_cells_) || is_one_gaussian(correlation().autocorrelation());
+        (is_cut_ && has_cells_of_all_meshes_) || is_one_gaussian(correlation().autocorrelation());
     return summary;
   }
 
@@ -140,33 +131,14 @@ class LatticeField final : public FieldMethod {
     require_digits(options.tolerance);
   }
 
-  /// Cells have an edge that the correlation length decides, to a power of 2, so that under a
-  /// cutoff they are the same on every mesh; but for a body so far across that places cannot be
-  /// sorted into such cells.
-  double coarse_cell(double distance) {
-    const double length = correlation().autocorrelation().length();
-    double cell = length * std::exp2(std::round(std::log2(coarse_distance * distance / length)));
-    for (; places_.n_doublings(cell) > 20; cell *= 2) has_enlarged_cells_ = true;
-    return cell;
-  }
-
   void set_levels(const LatticeTerms& chosen) {
-    const std::vector<MixtureTerm>& terms = chosen.mixture.terms;
-    const double cell = chosen.distance > 0 ? coarse_cell(chosen.distance)
-                                            : std::numeric_limits<double>::infinity();
-    const auto first_coarse = std::find_if(
-        terms.begin(), terms.end(), [&](const MixtureTerm& term) { return term.scale >= cell; });
-    const auto n_fine = static_cast<std::size_t>(first_coarse - terms.begin());
-    const bool has_coarse = terms.size() - n_fine >= 2;
-    const double polynomials = has_coarse ? polynomial_share * chosen.lattice_error : 0;
-    levels_ = make_levels(terms, space_, chosen.lattice_error - polynomials, chosen.distance);
-    if (!has_coarse) return;
-    std::vector<LatticeLevel> coarse(levels_.begin() + static_cast<std::ptrdiff_t>(n_fine),
-                                     levels_.end());
-    levels_.resize(n_fine);
-    coarse_ = CoarseLevels(std::move(coarse), space_, cell, n_coarse_stages, polynomials);
-    for (std::uint8_t& n : n_skipped_)
-      n = static_cast<std::uint8_t>(std::min<std::size_t>(n, n_fine));
+    const CoarseTerms& coarse = chosen.coarse;
+    has_cells_of_all_meshes_ = !coarse.is_enlarged;
+    levels_ = make_levels(chosen.mixture.terms, space_, chosen.lattice_error, chosen.distance);
+    const auto first_coarse = levels_.begin() + static_cast<std::ptrdiff_t>(coarse.first);
+    coarse_ = CoarseLevels({first_coarse, levels_.end()}, space_, coarse.cell, coarse.n_stages,
+                           coarse.error);
+    levels_.erase(first_coarse, levels_.end());
   }
 
   /// Places are told apart in units of the last digit of their coordinates, which shifts kernels
@@ -235,7 +207,7 @@ class LatticeField final : public FieldMethod {
   std::vector<std::uint32_t> position_;  ///< of each point among the sorted places
   ScaleMixture mixture_;
   double lost_variance_ = 0;
-  bool has_enlarged_cells_ = false;  ///< which depend on the extent of the places
+  bool has_cells_of_all_meshes_ = true;
 };
 
 void require_reachable(double tolerance) {

@@ -20,12 +20,6 @@ constexpr std::array node_errors = {1.4e-2, 1.9e-3, 1.8e-4,  2.0e-5,  1.7e-6,
 constexpr int fewest_nodes = 3;
 constexpr int most_nodes = fewest_nodes + static_cast<int>(node_errors.size()) - 1;
 
-int nodes_for(double error) {
-  int n = fewest_nodes;
-  while (n < most_nodes && node_errors[static_cast<std::size_t>(n - fewest_nodes)] > error) ++n;
-  return n;
-}
-
 std::vector<double> chebyshev_nodes(int n) {
   std::vector<double> nodes;
   nodes.reserve(static_cast<std::size_t>(n));
@@ -38,12 +32,18 @@ SmallMatrix identity_of_one() { return {1, 1, {1.0}}; }
 
 }  // namespace
 
+int polynomial_nodes(double error) {
+  int n = fewest_nodes;
+  while (n < most_nodes && node_errors[static_cast<std::size_t>(n - fewest_nodes)] > error) ++n;
+  return n;
+}
+
 CoarseLevels::CoarseLevels(std::vector<LatticeLevel> levels, const LatticeSpace& space, double cell,
                            int n_stages, double error)
     : levels_(std::move(levels)), cell_(cell) {
   if (levels_.empty()) return;
   for (int a = 0; a < 3; ++a) varies_[static_cast<std::size_t>(a)] = space.varies(a);
-  n_nodes_ = nodes_for(error / std::max(1, space.n_varying()));
+  n_nodes_ = polynomial_nodes(error / std::max(1, space.n_varying()));
   nodes_ = chebyshev_nodes(n_nodes_);
   for (const double node : nodes_) {
     double product = 1;
@@ -147,7 +147,7 @@ class CoarseLevels::Descent {
   void visit(SortedPlaces::Range range, int stage, const Values* parent) const {
     const Vec3& place = places_.places()[range.first];
     const Cell corner = levels_.cell_of(place, stage);
-    Values values(levels_.n_values(), 0.0);
+    Values values(levels_.n_values() + tensor_lanes - 1, 0.0);  // as interpolate() reads them
     if (parent != nullptr)
       add_parent(*parent, corner, levels_.cell_of(place, stage + 1), stage, values);
     for (std::size_t k = 0; k < levels_.levels_.size(); ++k)

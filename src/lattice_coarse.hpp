@@ -15,6 +15,9 @@
 
 namespace roughmesh::detail {
 
+/// Nodes of a cell along an axis, for an error of the covariance along it.
+int polynomial_nodes(double error);
+
 /// The sum of levels that are smooth in cells of their own scale. A level is known at the Chebyshev
 /// nodes of such cells, and a polynomial between them. What a cell knows goes on to the cells of
 /// half the edge in it, exactly, and from the smallest cells to the places: so that a place costs

@@ -45,6 +45,12 @@ struct LatticeBox {
   }
 };
 
+/// Where the columns of a box that needs this point begin: where a kernel stands among the lanes of
+/// a vector, and so the last bit of a sum, then depends on its place alone.
+constexpr std::int64_t first_of_column(std::int64_t point) {
+  return point - (point % gather_lanes + gather_lanes) % gather_lanes;
+}
+
 /// heights[i] += factor times the sum of the box under the kernel at places[i], for each i of
 /// `members`.
 void gather(const std::array<LatticeAxis, 3>& axes, const LatticeBox& box, double factor,

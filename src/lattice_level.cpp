@@ -16,10 +16,6 @@
 namespace roughmesh::detail {
 namespace {
 
-/// Edge of the cells that are worked on at a time, in lattice spacings: the box of a cell then
-/// stays in the cache of a core.
-double cell_points(int n_varying) { return n_varying == 3 ? 72 : n_varying == 2 ? 128 : 4096; }
-
 /// Above any box of such a cell. The smallest cells that a body far larger than the scale can be
 /// sorted into are larger.
 constexpr double most_box_values = 0x1p21;
@@ -86,10 +82,6 @@ struct Workspace {
 
 using Indices = std::array<std::int64_t, 3>;
 
-std::int64_t floor_to_multiple(std::int64_t number, std::int64_t of) {
-  return number - (number % of + of) % of;
-}
-
 /// The work on one cell: which lattice points its members reach, their noise, the sums.
 class CellSum {
  public:
@@ -119,8 +111,7 @@ class CellSum {
         box_.first[a] = std::min(box_.first[a], *point);
         end[a] = std::max(end[a], *point + axis.n_points());
       }
-    // Then where a kernel stands among the lanes of a vector depends on its place alone.
-    box_.first[2] = floor_to_multiple(box_.first[2], gather_lanes);
+    box_.first[2] = first_of_column(box_.first[2]);
     for (std::size_t a = 0; a < 3; ++a) box_.size[a] = end[a] - box_.first[a];
     const double n_values = static_cast<double>(box_.size[0]) * static_cast<double>(box_.size[1]) *
                             static_cast<double>(box_.column_length());

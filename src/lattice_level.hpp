@@ -39,6 +39,11 @@ void append_runs(const std::array<LatticeAxis, 3>& axes, const std::array<std::i
 std::vector<LatticeLevel> make_levels(std::span<const MixtureTerm> terms, const LatticeSpace& space,
                                       double error, double distance);
 
+/// Edge of the cells that add_level() works on at a time, in lattice spacings. In space the box of
+/// a cell is larger than the cache of a core, but the columns that a surface marks in it are not:
+/// the larger the cell, the less often neighbours make the same noise.
+constexpr double cell_points(int n_axes) { return n_axes == 3 ? 72 : n_axes == 2 ? 128 : 4096; }
+
 /// Adds the level to the heights of the places i with n_skipped[i] <= number.
 void add_level(const LatticeLevel& level, const NoiseStream& stream, const SortedPlaces& places,
                std::span<const std::uint8_t> n_skipped, int number, std::span<double> heights);

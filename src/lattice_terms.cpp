@@ -17,6 +17,15 @@ constexpr double mixture_share = 0.35;
 constexpr double nugget_share = 0.15;
 constexpr double lattice_share = 1 - mixture_share - nugget_share;
 
+constexpr double polynomial_share = 0.1;  // of the lattices', where terms are coarse
+
+// Terms at least this smooth, in typical distances of neighbours, are summed from coarse to fine:
+// then a cell has enough places to pay for its nodes.
+constexpr double coarse_distance = 10;
+
+// Sizes of cells. A number that depended on the places would make heights depend on them.
+constexpr int n_coarse_stages = 12;
+
 // Places nearer to each other than this part of the correlation length are one: their nuggets are.
 constexpr double same_place = 0x1p-30;
 
@@ -165,6 +174,42 @@ LatticeTerms terms_for_places(const Correlation& correlation, double tolerance,
   return terms;
 }
 
+LatticeTerms chosen_terms(const Correlation& correlation, const FieldOptions& options,
+                          const LatticeSpace& space, const SortedPlaces& places) {
+  if (is_one_gaussian(correlation.autocorrelation())) {
+    LatticeTerms terms = one_term(correlation, options.tolerance);
+    if (terms.mixture.terms.front().scale < options.cutoff.value_or(0))
+      refuse_cutoff(*options.cutoff);
+    return terms;
+  }
+  if (options.cutoff) return terms_above_cutoff(correlation, options.tolerance, *options.cutoff);
+  return terms_for_places(correlation, options.tolerance, space, places);
+}
+
+/// Cells have an edge that the correlation length decides, to a power of 2, so that under a cutoff
+/// they are the same on every mesh, unless they have to be enlarged.
+void set_cell(double distance, double length, const SortedPlaces& places, CoarseTerms& coarse) {
+  coarse.cell = length * std::exp2(std::round(std::log2(coarse_distance * distance / length)));
+  for (; places.n_doublings(coarse.cell) > 20; coarse.cell *= 2) coarse.is_enlarged = true;
+}
+
+void choose_coarse(double length, const SortedPlaces& places, LatticeTerms& chosen) {
+  const std::vector<MixtureTerm>& terms = chosen.mixture.terms;
+  chosen.coarse.first = terms.size();
+  if (chosen.distance == 0) return;
+  set_cell(chosen.distance, length, places, chosen.coarse);
+  const auto smooth = std::find_if(terms.begin(), terms.end(), [&](const MixtureTerm& term) {
+    return term.scale >= chosen.coarse.cell;
+  });
+  if (terms.end() - smooth < 2) return;
+  chosen.coarse.first = static_cast<std::size_t>(smooth - terms.begin());
+  chosen.coarse.n_stages = n_coarse_stages;
+  chosen.coarse.error = polynomial_share * chosen.lattice_error;
+  chosen.lattice_error -= chosen.coarse.error;
+  for (std::uint8_t& n : chosen.n_skipped)
+    n = static_cast<std::uint8_t>(std::min<std::size_t>(n, chosen.coarse.first));
+}
+
 }  // namespace
 
 bool is_one_gaussian(const Autocorrelation& autocorrelation) {
@@ -175,14 +220,9 @@ bool is_one_gaussian(const Autocorrelation& autocorrelation) {
 
 LatticeTerms choose_terms(const Correlation& correlation, const FieldOptions& options,
                           const LatticeSpace& space, const SortedPlaces& places) {
-  if (is_one_gaussian(correlation.autocorrelation())) {
-    LatticeTerms terms = one_term(correlation, options.tolerance);
-    if (terms.mixture.terms.front().scale < options.cutoff.value_or(0))
-      refuse_cutoff(*options.cutoff);
-    return terms;
-  }
-  if (options.cutoff) return terms_above_cutoff(correlation, options.tolerance, *options.cutoff);
-  return terms_for_places(correlation, options.tolerance, space, places);
+  LatticeTerms terms = chosen_terms(correlation, options, space, places);
+  choose_coarse(correlation.autocorrelation().length(), places, terms);
+  return terms;
 }
 
 }  // namespace roughmesh::detail

@@ -14,44 +14,51 @@ HWY_BEFORE_NAMESPACE();
 namespace roughmesh::detail::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Lanes = hn::ScalableTag<double>;
-using Vector = hn::Vec<Lanes>;
-
 using Size = std::ptrdiff_t;
+
+// Without masks, which read past the end of an array on some instruction sets: Highway allows a
+// masked load to fault, and one of SSE is a whole vector at an address that must be aligned.
+
+/// Of add_products(), as many of the columns from `first` on as vectors of d fill; then of shorter
+/// vectors, down to one number.
+template <std::size_t most_lanes>
+void add_columns(const double* a, Size n_rows, Size n_columns, const double* b, Size width,
+                 Size first, double* result) {
+  const hn::CappedTag<double, most_lanes> d;
+  const auto n_lanes = static_cast<Size>(hn::Lanes(d));
+  for (; first + n_lanes <= width; first += n_lanes)
+    for (Size i = 0; i < n_rows; ++i) {
+      auto sum = hn::LoadU(d, result + i * width + first);
+      for (Size k = 0; k < n_columns; ++k)
+        sum =
+            hn::MulAdd(hn::Set(d, a[i * n_columns + k]), hn::LoadU(d, b + k * width + first), sum);
+      hn::StoreU(sum, d, result + i * width + first);
+    }
+  if constexpr (most_lanes > 1)
+    if (first < width) add_columns<most_lanes / 2>(a, n_rows, n_columns, b, width, first, result);
+}
 
 void add_products(const double* a, Size n_rows, Size n_columns, const double* b, Size width,
                   double* result) {
-  const Lanes d;
-  const auto n_lanes = static_cast<Size>(hn::Lanes(d));
-  for (Size first = 0; first < width; first += n_lanes) {
-    const auto n = static_cast<std::size_t>(width - first);
-    const auto mask = hn::FirstN(d, n);
-    for (Size i = 0; i < n_rows; ++i) {
-      Vector sum = hn::MaskedLoad(mask, d, result + i * width + first);
-      for (Size k = 0; k < n_columns; ++k)
-        sum = hn::MulAdd(hn::Set(d, a[i * n_columns + k]),
-                         hn::MaskedLoad(mask, d, b + k * width + first), sum);
-      hn::BlendedStore(sum, mask, d, result + i * width + first);
-    }
-  }
+  add_columns<tensor_lanes>(a, n_rows, n_columns, b, width, 0, result);
 }
 
+/// The last vector of a row reaches into the next one, where weights are zero.
 double weighted_sum(const double* x, const double* y, const double* z, const double* values, int nx,
                     int ny, int nz) {
-  const Lanes d;
+  const hn::CappedTag<double, tensor_lanes> d;
   const auto n_lanes = static_cast<int>(hn::Lanes(d));
-  Vector total = hn::Zero(d);
+  auto total = hn::Zero(d);
   for (int first = 0; first < nz; first += n_lanes) {
-    const auto mask = hn::FirstN(d, static_cast<std::size_t>(nz - first));
-    Vector sum = hn::Zero(d);
+    auto sum = hn::Zero(d);
     const double* row = values + first;
     for (int i = 0; i < nx; ++i) {
-      Vector plane = hn::Zero(d);
+      auto plane = hn::Zero(d);
       for (int j = 0; j < ny; ++j, row += nz)
-        plane = hn::MulAdd(hn::Set(d, y[j]), hn::MaskedLoad(mask, d, row), plane);
+        plane = hn::MulAdd(hn::Set(d, y[j]), hn::LoadU(d, row), plane);
       sum = hn::MulAdd(hn::Set(d, x[i]), plane, sum);
     }
-    total = hn::MulAdd(hn::MaskedLoad(mask, d, z + first), sum, total);
+    total = hn::MulAdd(hn::LoadU(d, z + first), sum, total);
   }
   return hn::GetLane(hn::SumOfLanes(d, total));
 }

@@ -36,10 +36,14 @@ void add_product(const SmallMatrix& a, const double* b, int width, double* resul
 void add_tensor_product(const std::array<SmallMatrix, 3>& matrices, std::span<const double> values,
                         std::span<double> result);
 
-/// Weights of up to 16 values along an axis.
+/// Doubles of the longest vector register in use.
+constexpr int tensor_lanes = 8;
+
+/// Weights of up to 16 values along an axis, and zeros.
 using NodeWeights = std::array<double, 16>;
 
 /// The box of values under one vector of weights for each axis.
+/// @param values  and behind them tensor_lanes - 1 finite numbers, which do not count
 double interpolate(const std::array<NodeWeights, 3>& weights, const double* values,
                    const std::array<int, 3>& size);
 

@@ -14,6 +14,7 @@
 
 #include "lattice_level.hpp"
 #include "support/lattice_cases.hpp"
+#include "support/lattice_rows.hpp"
 
 namespace roughmesh {
 namespace {
@@ -107,6 +108,25 @@ TEST(LatticeLaw, IsThatOfCholesky) {
     expect_normal_numbers(heights);
     const FieldSampler cholesky(Correlation(points, rho, Distance::euclidean()),
                                 {.method = Method::cholesky});
+    expect_one_law(heights, realizations(cholesky, 200));
+  }
+}
+
+// Places near enough to each other that long scales are summed over cells.
+TEST(LatticeLaw, IsThatOfCholeskyWhereLevelsAreCoarse) {
+  const std::vector<Vec3> points = disk_points(200);
+  for (const AutocorrelationOptions& family :
+       {AutocorrelationOptions{.family = Family::exponential, .length = 1.5},
+        AutocorrelationOptions{
+            .family = Family::rational_quadratic, .length = 0.5, .alpha = 0.5}}) {
+    const Autocorrelation rho(family);
+    const FieldOptions options{.method = Method::lattice, .tolerance = tolerance, .dimension = 2};
+    const Correlation correlation(points, rho, Distance::euclidean());
+    EXPECT_GE(test::n_coarse_levels(correlation, options), 2U);
+    const FieldSampler lattice(correlation, options);
+    const Eigen::MatrixXd heights = realizations(lattice, 200);
+    expect_sample_covariance(lattice, heights);
+    const FieldSampler cholesky(correlation, {.method = Method::cholesky});
     expect_one_law(heights, realizations(cholesky, 200));
   }
 }

@@ -32,15 +32,16 @@ std::vector<Vec3> nodes_of_sphere() {
 }
 
 /// Heights are rows times noise, and covariances products of the same rows: sums of some thousand
-/// terms of order 1 at most, in another order.
-void expect_rows(const std::vector<Vec3>& places, const Autocorrelation& autocorrelation,
-                 const Distance& distance, FieldOptions options) {
+/// terms of order 1 at most, in another order. Returns the rows.
+test::LatticeRows expect_rows(const std::vector<Vec3>& places,
+                              const Autocorrelation& autocorrelation, const Distance& distance,
+                              FieldOptions options) {
   constexpr double rounding = 1e-12;
   options.method = Method::lattice;
   const Correlation correlation(places, autocorrelation, distance);
   const FieldSampler sampler(correlation, options);
   const test::LatticeRows rows(correlation, options);
-  ASSERT_EQ(sampler.summary().lattice->terms.size(), rows.n_levels());
+  EXPECT_EQ(sampler.summary().lattice->terms.size(), rows.n_levels());
   for (const std::uint64_t realization : {0, 1})
     EXPECT_LT(
         test::largest_difference(sampler.heights(17, realization), rows.heights({17, realization})),
@@ -55,6 +56,7 @@ void expect_rows(const std::vector<Vec3>& places, const Autocorrelation& autocor
     }
   EXPECT_LT(largest, rounding);
   EXPECT_LE(largest_error, options.tolerance);  // of all pairs, not of those audited alone
+  return rows;
 }
 
 TEST(LatticeRows, OfOneGaussian) {
@@ -70,8 +72,7 @@ TEST(LatticeRows, OfAGradedMesh) {
   const std::vector<Vec3> places = test::graded_plate();
   const Autocorrelation rough({.family = Family::self_affine, .length = 0.03, .hurst = 0.7});
   const FieldOptions options{.method = Method::lattice, .tolerance = 1e-2, .dimension = 2};
-  expect_rows(places, rough, Distance::euclidean(), options);
-  const test::LatticeRows rows({places, rough, Distance::euclidean()}, options);
+  const test::LatticeRows rows = expect_rows(places, rough, Distance::euclidean(), options);
   EXPECT_GT(rows.n_partly_skipped(), 100U);
 }
 
@@ -99,6 +100,35 @@ TEST(LatticeRows, OfPeriodicSpaces) {
   for (Vec3& x : places) x.z() = -0.7;
   const Distance plane = Distance::periodic({2.2, 2, 0}, {.lengths = {0.3, 0.9, 1}});
   expect_rows(places, gaussian, plane, {.tolerance = 1e-3, .dimension = 2});
+}
+
+/// Fine and coarse levels, places without some of the fine ones, and so nuggets, in one field.
+void expect_rows_of_every_kind(const std::vector<Vec3>& places,
+                               const AutocorrelationOptions& autocorrelation,
+                               const Distance& distance, const FieldOptions& options) {
+  const test::LatticeRows rows =
+      expect_rows(places, Autocorrelation(autocorrelation), distance, options);
+  EXPECT_GE(rows.n_coarse(), 2U);
+  EXPECT_GE(rows.n_levels(), rows.n_coarse() + 2);
+  EXPECT_GT(rows.n_partly_skipped(), 10U);
+}
+
+TEST(LatticeRows, OfEveryKindOfLevel) {
+  const std::vector<Vec3> plate = test::graded_plate(12);
+  std::vector<Vec3> saddle = plate;
+  for (Vec3& x : saddle) x.z() = 0.3 * x.x() * x.y();
+  const AutocorrelationOptions rough{.family = Family::exponential, .length = 0.2};
+  const AutocorrelationOptions heavy_tailed{
+      .family = Family::rational_quadratic, .length = 0.05, .alpha = 0.4};
+  for (const AutocorrelationOptions& rho : {rough, heavy_tailed}) {
+    expect_rows_of_every_kind(plate, rho, Distance::euclidean(),
+                              {.tolerance = 1e-4, .dimension = 2});
+    expect_rows_of_every_kind(saddle, rho, Distance::euclidean(), {.tolerance = 1e-2});
+  }
+  expect_rows_of_every_kind(plate, rough, Distance::periodic({2, 3, 0}),
+                            {.tolerance = 1e-3, .dimension = 2});
+  expect_rows_of_every_kind(saddle, rough, Distance::stretched({.lengths = {0.3, 0.2, inf}}),
+                            {.tolerance = 1e-3});
 }
 
 /// A field of some levels, as the audit sees it.

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -51,36 +50,6 @@ TEST(CoarsePolynomials, KeepWhatIsAllowed) {
   EXPECT_LT(best, 2e-9);
 }
 
-/// Node i of n of a cell, on [0, 1].
-double node_of(int n, int i) {
-  return 0.5 - 0.5 * std::cos(std::numbers::pi * (2 * i + 1) / (2 * n));
-}
-
-/// Weight of node i of n at a position in a cell, a product over all other nodes.
-double lagrange(int n, int i, double position) {
-  double weight = 1;
-  for (int j = 0; j < n; ++j)
-    if (j != i) weight *= (position - node_of(n, j)) / (node_of(n, i) - node_of(n, j));
-  return weight;
-}
-
-/// The kernels at the nodes of the cell that holds a place, under Lagrange's weights: passing on
-/// from cell to cell changes no polynomial.
-AxisRow polynomial_row(const LatticeAxis& axis, int n_nodes, double edge, double place) {
-  if (!axis.varies()) return test::kernel_row(axis, place);
-  const double corner = std::floor(place / edge) * edge;
-  AxisRow row{kernel_weights(axis, corner + edge * node_of(n_nodes, 0)).first, 0, {}};
-  for (int i = 0; i < n_nodes; ++i) {
-    const AxisRow kernel = test::kernel_row(axis, corner + edge * node_of(n_nodes, i));
-    const auto shift = static_cast<std::size_t>(kernel.first - row.first);
-    const auto size = static_cast<std::size_t>(kernel.size);
-    const double weight = lagrange(n_nodes, i, (place - corner) / edge);
-    row.size = static_cast<int>(shift + size);
-    for (std::size_t p = 0; p < size; ++p) row.value[shift + p] += weight * kernel.value[p];
-  }
-  return row;
-}
-
 struct CoarseCase {
   Distance distance;
   int dimension;
@@ -113,12 +82,12 @@ void expect_rows(const CoarseCase& c) {
   const std::vector<Vec3>& places = sorted.places();
   test::NoiseRows rows(levels, places.size());
   for (std::size_t k = 0; k < levels.size(); ++k) {
-    const double doublings = std::floor(std::log2(levels[k].scale / c.cell));
-    const double edge = c.cell * std::exp2(std::min<double>(doublings, c.n_stages - 1));
+    const double edge = test::coarse_edge(levels[k].scale, c.cell, c.n_stages);
     for (std::size_t i = 0; i < places.size(); ++i) {
       std::array<AxisRow, 3> along;
       for (std::size_t a = 0; a < 3; ++a)
-        along[a] = polynomial_row(levels[k].axes[a], n_nodes, edge, places[i][static_cast<int>(a)]);
+        along[a] =
+            test::polynomial_row(levels[k].axes[a], n_nodes, edge, places[i][static_cast<int>(a)]);
       rows.add_level(i, k, along);
     }
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sums of noise under kernels are those of three plain loops, for each kernel and number of axes.
+// Sums of noise under kernels are those of three plain loops, for each kernel, number of axes and
+// instruction set of this processor.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -12,10 +13,12 @@
 #include <hwy/aligned_allocator.h>
 
 #include "lattice_gather.hpp"
+#include "support/instruction_sets.hpp"
 
 namespace roughmesh::detail {
 namespace {
 
+using test::on_every_instruction_set;
 using Axes = std::array<LatticeAxis, 3>;
 
 /// Numbers of order 1 on a box around the kernels of all places, and what follows it.
@@ -110,95 +113,143 @@ void expect_plain_sums(const Axes& axes) {
 }
 
 TEST(Gather, IsThreeLoopsForEveryKernel) {
-  for (const KernelWidth& width : kernel_widths()) {
-    SCOPED_TRACE(width.n_points);
-    const LatticeAxis axis(0.7, width);
-    expect_plain_sums({axis, axis, axis});
-    expect_plain_sums({LatticeAxis(), axis, axis});
-    expect_plain_sums({LatticeAxis(), LatticeAxis(), axis});
-  }
-  expect_plain_sums({});
+  on_every_instruction_set([] {
+    for (const KernelWidth& width : kernel_widths()) {
+      SCOPED_TRACE(width.n_points);
+      const LatticeAxis axis(0.7, width);
+      expect_plain_sums({axis, axis, axis});
+      expect_plain_sums({LatticeAxis(), axis, axis});
+      expect_plain_sums({LatticeAxis(), LatticeAxis(), axis});
+    }
+    expect_plain_sums({});
+  });
 }
 
 TEST(Gather, TakesAxesThatDiffer) {
-  const auto widths = kernel_widths();
-  for (std::size_t k = 0; k + 2 < widths.size(); ++k) {
-    SCOPED_TRACE(k);
-    const LatticeAxis a(0.7, widths[k]), b(1.1, widths[k + 2]), flat;
-    for (const double period : {0.8, 2.0, 9.0}) {
-      const LatticeAxis c(0.7, widths[k + 1], period);
-      expect_plain_sums({a, b, c});
-      expect_plain_sums({c, a, b});
-      expect_plain_sums({flat, c, b});
-      expect_plain_sums({a, b, flat});
-      expect_plain_sums({c, flat, a});
+  on_every_instruction_set([] {
+    const auto widths = kernel_widths();
+    for (std::size_t k = 0; k + 2 < widths.size(); ++k) {
+      SCOPED_TRACE(k);
+      const LatticeAxis a(0.7, widths[k]), b(1.1, widths[k + 2]), flat;
+      for (const double period : {0.8, 2.0, 9.0}) {
+        const LatticeAxis c(0.7, widths[k + 1], period);
+        expect_plain_sums({a, b, c});
+        expect_plain_sums({c, a, b});
+        expect_plain_sums({flat, c, b});
+        expect_plain_sums({a, b, flat});
+        expect_plain_sums({c, flat, a});
+      }
     }
-  }
+  });
 }
 
 TEST(Gather, AddsToItsMembersAlone) {
-  const LatticeAxis axis(0.7, kernel_widths()[5]);
-  const std::vector<Vec3> places = random_places(40);
-  const TestBox box({axis, axis, axis}, places);
-  for (std::size_t n = 0; n < 20; ++n) {
-    std::vector<std::uint32_t> members;
-    for (std::size_t k = 0; k < n; ++k) members.push_back(static_cast<std::uint32_t>(39 - 2 * k));
-    std::vector<double> some(places.size(), 1.5), all(places.size(), 1.5);
-    gather({axis, axis, axis}, box.box(), 2, members, places.data(), some.data());
-    gather({axis, axis, axis}, box.box(), 2, all_of(places), places.data(), all.data());
-    for (std::uint32_t i = 0; i < places.size(); ++i) {
-      const bool is_member = std::find(members.begin(), members.end(), i) != members.end();
-      EXPECT_EQ(some[i], is_member ? all[i] : 1.5) << i;  // the same bits in any company
+  on_every_instruction_set([] {
+    const LatticeAxis axis(0.7, kernel_widths()[5]);
+    const std::vector<Vec3> places = random_places(40);
+    const TestBox box({axis, axis, axis}, places);
+    for (std::size_t n = 0; n < 20; ++n) {
+      std::vector<std::uint32_t> members;
+      for (std::size_t k = 0; k < n; ++k) members.push_back(static_cast<std::uint32_t>(39 - 2 * k));
+      std::vector<double> some(places.size(), 1.5), all(places.size(), 1.5);
+      gather({axis, axis, axis}, box.box(), 2, members, places.data(), some.data());
+      gather({axis, axis, axis}, box.box(), 2, all_of(places), places.data(), all.data());
+      for (std::uint32_t i = 0; i < places.size(); ++i) {
+        const bool is_member = std::find(members.begin(), members.end(), i) != members.end();
+        EXPECT_EQ(some[i], is_member ? all[i] : 1.5) << i;  // the same bits in any company
+      }
     }
-  }
+  });
 }
 
 // Vectors reach beyond a kernel, but what they find there has no weight.
 TEST(Gather, IgnoresWhatTheKernelDoesNotTakeIn) {
-  for (const KernelWidth& width : kernel_widths()) {
-    const LatticeAxis axis(0.7, width);
-    for (const Axes& axes :
-         {Axes{axis, axis, axis}, Axes{LatticeAxis(), axis, axis}, Axes{axis, axis, {}}}) {
-      const std::vector<Vec3> places = random_places(6);
-      const TestBox box(axes, places);
-      for (std::uint32_t i = 0; i < places.size(); ++i) {
-        std::vector<double> before(places.size()), after(places.size());
-        const std::vector<std::uint32_t> member = {i};
-        TestBox disturbed(axes, places);
-        disturbed.set_all_but_kernel(axes, places[i], 1e300);
-        gather(axes, box.box(), 1, member, places.data(), before.data());
-        gather(axes, disturbed.box(), 1, member, places.data(), after.data());
-        EXPECT_EQ(before, after) << width.n_points;
+  on_every_instruction_set([] {
+    for (const KernelWidth& width : kernel_widths()) {
+      const LatticeAxis axis(0.7, width);
+      for (const Axes& axes :
+           {Axes{axis, axis, axis}, Axes{LatticeAxis(), axis, axis}, Axes{axis, axis, {}}}) {
+        const std::vector<Vec3> places = random_places(6);
+        const TestBox box(axes, places);
+        for (std::uint32_t i = 0; i < places.size(); ++i) {
+          std::vector<double> before(places.size()), after(places.size());
+          const std::vector<std::uint32_t> member = {i};
+          TestBox disturbed(axes, places);
+          disturbed.set_all_but_kernel(axes, places[i], 1e300);
+          gather(axes, box.box(), 1, member, places.data(), before.data());
+          gather(axes, disturbed.box(), 1, member, places.data(), after.data());
+          EXPECT_EQ(before, after) << width.n_points;
+        }
       }
     }
+  });
+}
+
+/// exp(-(x - b j)^2 / s^2) at the points that the axis says, over the root of their squares.
+std::vector<double> plain_weights(const LatticeAxis& axis, double x) {
+  std::vector<double> weights;
+  double squares = 0;
+  for (int p = 0; p < axis.n_points(); ++p) {
+    const double offset =
+        axis.varies() ? x * axis.inverse_spacing() - static_cast<double>(axis.first_point(x)) - p
+                      : 0;
+    weights.push_back(std::exp(-axis.exponent() * offset * offset));
+    squares += weights.back() * weights.back();
   }
+  const double factor = axis.amplitude() > 0 ? axis.amplitude() : 1 / std::sqrt(squares);
+  for (double& weight : weights) weight *= factor;
+  return weights;
+}
+
+// The factor from one point to the next is off by at most 10 units of 2^-53 (its exponent is below
+// 10, and rounds), and 40 of them are multiplied: 5e-14 of a weight, which is at most 1.
+TEST(KernelWeights, AreGaussiansOnEveryInstructionSet) {
+  on_every_instruction_set([] {
+    for (const KernelWidth& width : kernel_widths())
+      for (const LatticeAxis& axis : {LatticeAxis(0.7, width), LatticeAxis(0.7, width, 0.9), {}})
+        for (std::size_t n = 1; n <= 17; ++n) {
+          std::vector<double> places;
+          for (const Vec3& x : random_places(n)) places.push_back(x.z());
+          std::vector<AxisWeights> weights(n);
+          kernel_weights(axis, places, weights);
+          for (std::size_t i = 0; i < n; ++i) {
+            const std::vector<double> plain = plain_weights(axis, places[i]);
+            for (std::size_t p = 0; p < plain.size(); ++p)
+              EXPECT_NEAR(weights[i].weight[p], plain[p], 1e-13) << n << " " << i << " " << p;
+          }
+        }
+  });
 }
 
 TEST(KernelWeights, AreZeroBeyondTheKernel) {
-  for (const KernelWidth& width : kernel_widths())
-    for (const LatticeAxis& axis : {LatticeAxis(0.7, width), LatticeAxis(0.7, width, 0.9), {}}) {
-      const AxisWeights weights = kernel_weights(axis, 1.234);
-      for (std::size_t p = 0; p < weights.weight.size(); ++p)
-        if (p < static_cast<std::size_t>(axis.n_points()))
-          EXPECT_GT(weights.weight[p], 0);
-        else
-          EXPECT_EQ(weights.weight[p], 0);
-    }
+  on_every_instruction_set([] {
+    for (const KernelWidth& width : kernel_widths())
+      for (const LatticeAxis& axis : {LatticeAxis(0.7, width), LatticeAxis(0.7, width, 0.9), {}}) {
+        const AxisWeights weights = kernel_weights(axis, 1.234);
+        for (std::size_t p = 0; p < weights.weight.size(); ++p)
+          if (p < static_cast<std::size_t>(axis.n_points()))
+            EXPECT_GT(weights.weight[p], 0);
+          else
+            EXPECT_EQ(weights.weight[p], 0);
+      }
+  });
 }
 
 TEST(KernelWeights, StartWhereTheAxisSays) {
-  for (const KernelWidth& width : kernel_widths()) {
-    const LatticeAxis axis(0.7, width);
-    for (const Vec3& x : random_places(200))
-      for (const double unit : {1.0, 1e9}) {
-        const double place = x.x() * unit;
-        EXPECT_EQ(kernel_weights(axis, place).first, axis.first_point(place)) << place;
+  on_every_instruction_set([] {
+    for (const KernelWidth& width : kernel_widths()) {
+      const LatticeAxis axis(0.7, width);
+      for (const Vec3& x : random_places(200))
+        for (const double unit : {1.0, 1e9}) {
+          const double place = x.x() * unit;
+          EXPECT_EQ(kernel_weights(axis, place).first, axis.first_point(place)) << place;
+        }
+      for (int point = -50; point < 50; ++point) {  // where the kernel jumps, and half way
+        const double place = 0.5 * point / axis.inverse_spacing();
+        EXPECT_EQ(kernel_weights(axis, place).first, axis.first_point(place)) << point;
       }
-    for (int point = -50; point < 50; ++point) {  // where the kernel jumps, and half way
-      const double place = 0.5 * point / axis.inverse_spacing();
-      EXPECT_EQ(kernel_weights(axis, place).first, axis.first_point(place)) << point;
     }
-  }
+  });
 }
 
 }  // namespace

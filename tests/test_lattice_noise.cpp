@@ -10,32 +10,22 @@
 
 #include <Random123/philox.h>
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include "lattice_noise.hpp"
 #include "parallel.hpp"
 #include "philox_normals.hpp"
+#include "support/instruction_sets.hpp"
 
 namespace roughmesh {
 namespace {
 
 using namespace detail;
+using test::on_every_instruction_set;
 using Block = std::array<std::uint32_t, 4>;
 using Point = std::array<std::int64_t, 3>;
 
 constexpr std::int64_t two_to_31 = std::int64_t{1} << 31;
 constexpr std::int64_t two_to_32 = std::int64_t{1} << 32;
-
-/// Calls test() once for every instruction set that was compiled and that this processor has.
-template <class Test>
-void on_every_instruction_set(const Test& test) {
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    SCOPED_TRACE(hwy::TargetName(target));
-    hwy::SetSupportedTargetsForTest(target);
-    test();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-}
 
 std::uint64_t joined(std::uint32_t low, std::uint32_t high) {
   return low | std::uint64_t{high} << 32;

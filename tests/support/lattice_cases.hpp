@@ -85,8 +85,8 @@ inline std::vector<Vec3> thin_shell() {
 }
 
 /// Square plate whose edges grow a hundredfold from one corner to the opposite one.
-inline std::vector<Vec3> graded_plate() {
-  std::vector<Vec3> nodes = plate(22).nodes;
+inline std::vector<Vec3> graded_plate(int n_edges = 22) {
+  std::vector<Vec3> nodes = plate(n_edges).nodes;
   for (Vec3& x : nodes)
     for (int axis = 0; axis < 2; ++axis) x[axis] = (std::pow(100.0, x[axis]) - 1) / 99;
   return nodes;

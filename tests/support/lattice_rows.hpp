@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "roughmesh/correlation.hpp"
 #include "roughmesh/field.hpp"
 
+#include "lattice_coarse.hpp"
 #include "lattice_gather.hpp"
 #include "lattice_level.hpp"
 #include "lattice_noise.hpp"
@@ -121,8 +123,61 @@ inline detail::AxisRow kernel_row(const detail::LatticeAxis& axis, double place)
   return row;
 }
 
-/// Rows of a field whose levels are summed one by one, as they are where less than two of them are
-/// much larger than the distance of neighbours.
+/// Node i of n of a cell, on [0, 1].
+inline double node_of(int n, int i) {
+  return 0.5 - 0.5 * std::cos(std::numbers::pi * (2 * i + 1) / (2 * n));
+}
+
+/// Weight of node i of n at a position in a cell, a product over all other nodes.
+inline double lagrange(int n, int i, double position) {
+  double weight = 1;
+  for (int j = 0; j < n; ++j)
+    if (j != i) weight *= (position - node_of(n, j)) / (node_of(n, i) - node_of(n, j));
+  return weight;
+}
+
+/// The kernels at the nodes of the cell that holds a place, under Lagrange's weights: passing on
+/// from cell to cell changes no polynomial.
+inline detail::AxisRow polynomial_row(const detail::LatticeAxis& axis, int n_nodes, double edge,
+                                      double place) {
+  if (!axis.varies()) return kernel_row(axis, place);
+  const double corner = std::floor(place / edge) * edge;
+  detail::AxisRow row{
+      detail::kernel_weights(axis, corner + edge * node_of(n_nodes, 0)).first, 0, {}};
+  for (int i = 0; i < n_nodes; ++i) {
+    const detail::AxisRow kernel = kernel_row(axis, corner + edge * node_of(n_nodes, i));
+    const auto shift = static_cast<std::size_t>(kernel.first - row.first);
+    const auto size = static_cast<std::size_t>(kernel.size);
+    const double weight = lagrange(n_nodes, i, (place - corner) / edge);
+    row.size = static_cast<int>(shift + size);
+    for (std::size_t p = 0; p < size; ++p) row.value[shift + p] += weight * kernel.value[p];
+  }
+  return row;
+}
+
+/// Edge of the cells of a level, a power of 2 above the smallest and at most the scale.
+inline double coarse_edge(double scale, double cell, int n_stages) {
+  const double doublings = std::floor(std::log2(scale / cell) + 1e-9);
+  return cell * std::exp2(std::min<double>(doublings, n_stages - 1));
+}
+
+inline std::vector<Vec3> stretched(const Correlation& correlation,
+                                   const detail::LatticeSpace& space) {
+  std::vector<Vec3> result;
+  for (const Vec3& x : correlation.places()) result.push_back(space(x));
+  return result;
+}
+
+/// How many levels of a field are summed over cells.
+inline std::size_t n_coarse_levels(const Correlation& correlation, const FieldOptions& options) {
+  const detail::LatticeSpace space(correlation.distance(), options.dimension);
+  const detail::SortedPlaces sorted(stretched(correlation, space),
+                                    correlation.autocorrelation().length());
+  const detail::LatticeTerms terms = detail::choose_terms(correlation, options, space, sorted);
+  return terms.mixture.terms.size() - terms.coarse.first;
+}
+
+/// Rows of a field: kernels of the fine levels, polynomials of the coarse ones.
 class LatticeRows {
  public:
   LatticeRows(const Correlation& correlation, const FieldOptions& options)
@@ -137,37 +192,38 @@ class LatticeRows {
   }
 
   std::size_t n_levels() const { return rows_.levels().size(); }
+  std::size_t n_coarse() const { return n_levels() - terms_.coarse.first; }
   std::vector<double> heights(const NoiseStream& stream) const { return rows_.heights(stream); }
   Eigen::MatrixXd covariance() const { return rows_.covariance(); }
 
-  /// Places for which some levels, but not all, are nugget.
+  /// Places for which some fine levels, but not all, are nugget.
   std::size_t n_partly_skipped() const {
     return static_cast<std::size_t>(
         std::count_if(terms_.n_skipped.begin(), terms_.n_skipped.end(),
-                      [&](std::size_t n) { return n > 0 && n < n_levels(); }));
+                      [&](std::size_t n) { return n > 0 && n < terms_.coarse.first; }));
   }
 
  private:
-  static std::vector<Vec3> stretched(const Correlation& correlation,
-                                     const detail::LatticeSpace& space) {
-    std::vector<Vec3> result;
-    for (const Vec3& x : correlation.places()) result.push_back(space(x));
-    return result;
-  }
-
   void add_place(std::size_t number) {
     const std::size_t row = sorted_.order()[number];
     const Vec3& place = sorted_.places()[number];
     const std::size_t n_skipped = terms_.n_skipped.empty() ? 0 : terms_.n_skipped[number];
     double nugget = terms_.mixture.nugget;
     for (std::size_t k = 0; k < n_skipped; ++k) nugget += rows_.levels()[k].weight;
-    for (std::size_t k = n_skipped; k < n_levels(); ++k) {
-      const auto& axes = rows_.levels()[k].axes;
+    for (std::size_t k = n_skipped; k < n_levels(); ++k)
       rows_.add_level(row, k,
-                      {kernel_row(axes[0], place[0]), kernel_row(axes[1], place[1]),
-                       kernel_row(axes[2], place[2])});
-    }
+                      {row_along(k, 0, place), row_along(k, 1, place), row_along(k, 2, place)});
     if (nugget > 0) rows_.add_nugget(row, std::sqrt(nugget), place / unit_);
+  }
+
+  detail::AxisRow row_along(std::size_t number, std::size_t axis, const Vec3& place) const {
+    const detail::CoarseTerms& coarse = terms_.coarse;
+    const detail::LatticeLevel& level = rows_.levels()[number];
+    const double x = place[static_cast<int>(axis)];
+    if (number < coarse.first) return kernel_row(level.axes[axis], x);
+    return polynomial_row(level.axes[axis],
+                          detail::polynomial_nodes(coarse.error / std::max(1, space_.n_varying())),
+                          coarse_edge(level.scale, coarse.cell, coarse.n_stages), x);
   }
 
   detail::LatticeSpace space_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <tuple>
 #include <vector>
@@ -28,9 +29,15 @@ inline double mesh_size_of_sphere(std::size_t n, double radius) {
   return std::sqrt(4 * triangle_area / std::numbers::sqrt3);
 }
 
+/// Infinite where the sizes differ or a difference is no number.
 inline double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  if (a.size() != b.size()) return inf;
   double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double difference = std::abs(a[i] - b[i]);
+    largest = std::max(largest, std::isnan(difference) ? inf : difference);
+  }
   return largest;
 }
 
