@@ -84,7 +84,8 @@ TEST(Progress, ARunTellsItsStages) {
                                                                         : of_eight;
         stages.emplace_back(progress.stage);
       });
-  const std::vector<std::string> expected = {"field", "displace", "volume", "check", "write"};
+  const std::vector<std::string> expected = {"field",  "displace", "check",
+                                             "volume", "check",    "write"};
   EXPECT_EQ(of_seven, expected);
   EXPECT_EQ(of_eight, expected);
   for (const char* const stage : {"surface", "field", "audit"})
