@@ -40,7 +40,7 @@ test::LatticeRows expect_rows(const std::vector<Vec3>& places,
   options.method = Method::lattice;
   const Correlation correlation(places, autocorrelation, distance);
   const FieldSampler sampler(correlation, options);
-  const test::LatticeRows rows(correlation, options);
+  test::LatticeRows rows(correlation, options);
   EXPECT_EQ(sampler.summary().lattice->terms.size(), rows.n_levels());
   for (const std::uint64_t realization : {0, 1})
     EXPECT_LT(
