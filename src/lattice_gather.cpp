@@ -90,7 +90,8 @@ void write_weights(const LatticeAxis& axis, std::span<const double> places,
   }
 }
 
-/// The columns of a box under the kernel at one place, and their weights, each n_lanes numbers apart.
+/// The columns of a box under the kernel at one place, and their weights, each n_lanes numbers
+/// apart.
 struct Columns {
   const double* origin;
   std::int64_t x_stride, y_stride;
@@ -159,9 +160,13 @@ void gather_members(const std::array<LatticeAxis, 3>& axes, const LatticeBox& bo
       const double* const column =
           box.column(static_cast<std::int64_t>(batch[0].first[lane]) - box.first[0],
                      static_cast<std::int64_t>(batch[1].first[lane]) - box.first[1]);
-      const Columns columns{column + (z.first - box.first[2]), box.size[1] * box.column_length(),
-                            box.column_length(), &batch[0].weight[lane], &batch[1].weight[lane],
-                            axes[0].n_points(), axes[1].n_points()};
+      const Columns columns{column + (z.first - box.first[2]),
+                            box.size[1] * box.column_length(),
+                            box.column_length(),
+                            &batch[0].weight[lane],
+                            &batch[1].weight[lane],
+                            axes[0].n_points(),
+                            axes[1].n_points()};
       heights[members[m + lane]] += factor * sum_at(columns, z.weight.data(), n_vectors);
     }
   }

@@ -12,8 +12,8 @@
 
 namespace roughmesh::detail {
 
-/// Doubles of the longest vector register in use, and of a cache line: columns begin at multiples of
-/// it, so that no load straddles two lines.
+/// Doubles of the longest vector register in use, and of a cache line: columns begin at multiples
+/// of it, so that no load straddles two lines.
 constexpr int gather_lanes = 8;
 
 /// Where the kernel at a place meets the lattice of an axis: weights of the points first,

@@ -208,8 +208,8 @@ void append_runs(const std::array<LatticeAxis, 3>& axes, const std::array<std::i
   for (std::int64_t done = 0; done < n; done += run.n) {
     run.z = along.wrapped(first[2] + done);
     const std::int64_t left = n - done;
-    run.n = static_cast<std::int32_t>(along.n_period() > 0 ? std::min(left, along.n_period() - run.z)
-                                                          : left);
+    run.n = static_cast<std::int32_t>(
+        along.n_period() > 0 ? std::min(left, along.n_period() - run.z) : left);
     run.values = values + done;
     runs.push_back(run);
   }
