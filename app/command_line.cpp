@@ -185,12 +185,13 @@ struct Parser {
 
     info =
         app.add_subcommand("info", "list groups and sizes, and what roughness the mesh can carry");
-    add_options(*info, command.options,
-                {"input",        "group",  "rms",     "length",    "acf",      "length_definition",
-                 "nu",           "hurst",  "rolloff", "power",     "alpha",    "table",
-                 "angle",        "cutoff", "method",  "tolerance", "distance", "period",
-                 "edge_angle",   "flip",   "unit",    "mesh_size", "gmsh",     "timeout",
-                 "trust_scripts"});
+    add_options(
+        *info, command.options,
+        {"input",   "group",        "rms",     "length",    "acf",       "length_definition",
+         "nu",      "hurst",        "rolloff", "power",     "alpha",     "table",
+         "angle",   "cutoff",       "method",  "tolerance", "distance",  "period",
+         "edges",   "edge_angle",   "flip",    "unit",      "mesh_size", "gmsh",
+         "timeout", "trust_scripts"});
     info->footer(exit_codes);
   }
 

@@ -218,8 +218,7 @@ class Run {
     select();
     const VolumeMover mover = timed(
         times().volume, [&] { return VolumeMover(mesh_, rough_.surfaces, last_method(options_)); });
-    moved_ = moved_nodes(rough_.surfaces);
-    fixed_ = detail::fixed_among(rough_, mesh_, moved_);
+    prepare_surface_mover();
     n_wall_nodes_ = detail::n_moving(rough_, mesh_, mover.wall_nodes());
     detail::warn_of_walls(report_, n_wall_nodes_);
     quality_before_ = timed(times().check, [&] { return min_quality(mesh_); });
@@ -265,6 +264,7 @@ class Run {
           timed(times().surface, [&] { return assess_resolution(surface, correlation); });
       detail::warn_of_surface(report_, surface, rough_.plans[s].request);
       detail::warn_of_period(report_, surface, rough_.plans[s].request);
+      detail::warn_of_taper(report_, surface, rough_.plans[s].taper);
       detail::warn_of_scale(report_, described, rough_.plans[s].request);
     }
   }
@@ -310,6 +310,14 @@ class Run {
     report_.citations = cited_works(samplers_, rough_.fields);
   }
 
+  void prepare_surface_mover() {
+    timed(times().displace, [&] {
+      surface_mover_.emplace(
+          rough_.surfaces, detail::edge_options(rough_),
+          NodeConstraints{.fixed = detail::fixed_nodes(rough_, mesh_), .sliding = {}});
+    });
+  }
+
   /// Heights of every surface for one realization.
   std::vector<std::vector<double>> draw(std::uint64_t realization) const {
     std::vector<std::vector<double>> fields, heights;
@@ -328,24 +336,18 @@ class Run {
         ->request;
   }
 
-  /// What one surface fixes, no other moves.
-  std::vector<Vec3> displacements_of(const std::vector<std::vector<double>>& heights) const {
-    std::vector<Vec3> displacements = displace_nodes(rough_.surfaces, heights);
-    for (const std::size_t i : fixed_) displacements[i] = Vec3::Zero();
-    return displacements;
-  }
-
   /// The surface alone, before anything follows it.
   SurfaceCheck check_surfaces(const std::vector<Vec3>& displacements) const {
     std::vector<Vec3> moved = mesh_.nodes;
-    for (std::size_t i = 0; i < moved_.size(); ++i) moved[moved_[i]] += displacements[i];
+    const std::vector<Index>& nodes = surface_mover_->nodes();
+    for (std::size_t i = 0; i < nodes.size(); ++i) moved[nodes[i]] += displacements[i];
     return checker_->check(moved);
   }
 
   void realize(const VolumeMover& mover, RoughMesh& rough) {
     const auto heights = timed(times().field, [&] { return draw(rough.realization); });
     const std::vector<Vec3> displacements =
-        timed(times().displace, [&] { return displacements_of(heights); });
+        timed(times().displace, [&] { return surface_mover_->move(heights); });
     rough.surface_check = timed(times().check, [&] { return check_surfaces(displacements); });
     detail::warn_of_input_intersections(report_, rough.surface_check);
     refuse_surface(rough.surface_check, rough.realization,
@@ -394,8 +396,7 @@ class Run {
   RoughSurfaces rough_;
   std::vector<SqTarget> targets_;       // one for each surface
   std::vector<FieldSampler> samplers_;  // one for each field
-  std::vector<Index> moved_;            // nodes of all surfaces
-  std::vector<std::size_t> fixed_;      // positions among the moved nodes
+  std::optional<SurfaceMover> surface_mover_;
   std::optional<SurfaceChecker> checker_;
   Index n_wall_nodes_ = 0;  // that move
   double quality_before_ = 0;

@@ -3,13 +3,17 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include <fmt/format.h>
 
 #include "roughmesh/field_model.hpp"
 
+#include "edge_taper.hpp"
 #include "messages.hpp"
+#include "sectors.hpp"
 
 namespace roughmesh::detail {
 namespace {
@@ -256,6 +260,62 @@ SurfacePlan plan_surface(const Mesh& mesh, const Surface& surface, const Roughne
   return plan;
 }
 
+EdgeOptions edge_options(const Roughness& request, std::vector<double> weights) {
+  return {.rule = request.edges,
+          .sharp_angle = surface_options(request).sharp_angle,
+          .weights = std::move(weights),
+          .images = {}};
+}
+
+void hold_sharp_points(const Surface& surface, SurfacePlan& plan) {
+  const std::vector<std::uint8_t> sharp =
+      sharp_points(surface, surface_options(plan.request).sharp_angle);
+  for (std::size_t i = 0; i < sharp.size(); ++i)
+    if (sharp[i] != 0) plan.weights[i] = plan.free[i] = 0;
+}
+
+/// Area-weighted mean square of the weights.
+double mean_square(const Surface& surface, std::span<const double> weights) {
+  double sum = 0;
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    sum += surface.areas[i] * weights[i] * weights[i];
+  return sum / surface.area;
+}
+
+void apply_taper(const Surface& surface, std::span<const double> factors, const AcuteEdge& sharpest,
+                 SurfacePlan& plan) {
+  const double before = mean_square(surface, plan.weights);
+  for (std::size_t i = 0; i < factors.size(); ++i) {
+    plan.taper.n_points += factors[i] < 1 && plan.weights[i] > 0;
+    plan.weights[i] *= factors[i];
+  }
+  const double after = mean_square(surface, plan.weights);
+  plan.taper.sq_share = before > 0 ? std::sqrt(after / before) : 1;
+  plan.taper.angle = sharpest.angle;
+  plan.taper.place = sharpest.place;
+  if (after == 0 && before > 0)
+    throw InputError(fmt::format(
+        "the edge at {} has an angle of {:.3g} degrees, beside which no height fits into the wall; "
+        "lower --rms, round the edge, or choose --edges average",
+        place(sharpest.place), sharpest.angle * 180 / std::numbers::pi));
+}
+
+/// Weights that the edge rules of the surfaces ask for.
+void apply_edge_rules(RoughSurfaces& rough) {
+  std::vector<EdgeOptions> options;
+  std::vector<double> rms;
+  for (std::size_t s = 0; s < rough.plans.size(); ++s) {
+    SurfacePlan& plan = rough.plans[s];
+    if (plan.request.edges == EdgeRule::fix) hold_sharp_points(rough.surfaces[s], plan);
+    options.push_back(edge_options(plan.request, {}));
+    rms.push_back(plan.request.rms);
+  }
+  const EdgeTaper taper = taper_acute_edges(rough.surfaces, options, rms);
+  for (std::size_t s = 0; s < rough.plans.size(); ++s)
+    if (!taper.factors[s].empty())
+      apply_taper(rough.surfaces[s], taper.factors[s], taper.sharpest[s], rough.plans[s]);
+}
+
 }  // namespace
 
 RoughSurfaces prepare_surfaces(const Mesh& mesh, std::span<const Roughness> requests) {
@@ -264,6 +324,7 @@ RoughSurfaces prepare_surfaces(const Mesh& mesh, std::span<const Roughness> requ
     rough.surfaces.push_back(select_surface(mesh, surface_options(request)));
     rough.plans.push_back(plan_surface(mesh, rough.surfaces.back(), request));
   }
+  apply_edge_rules(rough);
   for (const std::vector<std::size_t>& members : share_fields(requests)) {
     for (const std::size_t member : members) rough.plans[member].field = rough.fields.size();
     rough.fields.push_back(prepare_field(mesh, rough, members, TornLinks::refused));
@@ -274,6 +335,7 @@ RoughSurfaces prepare_surfaces(const Mesh& mesh, std::span<const Roughness> requ
 RoughSurfaces prepare_surface(const Mesh& mesh, const Surface& surface, const Roughness& request,
                               TornLinks torn_links) {
   RoughSurfaces rough{{surface}, {plan_surface(mesh, surface, request)}, {}};
+  apply_edge_rules(rough);
   rough.fields.push_back(prepare_field(mesh, rough, std::array<std::size_t, 1>{}, torn_links));
   return rough;
 }
@@ -299,17 +361,31 @@ std::vector<double> heights_of(const SurfacePlan& surface, std::span<const doubl
   return heights;
 }
 
-std::vector<std::size_t> fixed_among(const RoughSurfaces& rough, const Mesh& mesh,
-                                     std::span<const Index> moved) {
+std::vector<EdgeOptions> edge_options(const RoughSurfaces& rough) {
+  std::vector<EdgeOptions> options;
+  std::vector<Index> first(1, 0);  // number of the first class of points of each field
+  for (const FieldPlan& field : rough.fields)
+    first.push_back(first.back() + static_cast<Index>(field.partners.master.size()));
+  for (const SurfacePlan& plan : rough.plans) {
+    options.push_back(edge_options(plan.request, plan.weights));
+    if (!plan.request.distance || !is_periodic(*plan.request.distance)) continue;
+    const PeriodicPartners& partners = rough.fields[plan.field].partners;
+    for (const Index point : plan.field_point)
+      options.back().images.push_back(first[plan.field] + partners.master[point]);
+  }
+  return options;
+}
+
+std::vector<Index> fixed_nodes(const RoughSurfaces& rough, const Mesh& mesh) {
   std::vector<bool> is_fixed(mesh.nodes.size(), false);
   for (std::size_t s = 0; s < rough.surfaces.size(); ++s)
     for (std::size_t i = 0; i < rough.surfaces[s].nodes.size(); ++i)
       if (rough.plans[s].free[rough.surfaces[s].point_of_node[i]] == 0)
         is_fixed[rough.surfaces[s].nodes[i]] = true;
-  std::vector<std::size_t> positions;
-  for (std::size_t i = 0; i < moved.size(); ++i)
-    if (is_fixed[moved[i]]) positions.push_back(i);
-  return positions;
+  std::vector<Index> nodes;
+  for (std::size_t node = 0; node < is_fixed.size(); ++node)
+    if (is_fixed[node]) nodes.push_back(static_cast<Index>(node));
+  return nodes;
 }
 
 }  // namespace roughmesh::detail

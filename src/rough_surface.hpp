@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "roughmesh/correlation.hpp"
+#include "roughmesh/displace.hpp"
 #include "roughmesh/field.hpp"
 #include "roughmesh/mesh.hpp"
 #include "roughmesh/options.hpp"
@@ -17,11 +18,21 @@
 
 namespace roughmesh::detail {
 
+/// What acute edges do to a surface (docs/math.md, eq. 57).
+struct TaperReport {
+  Index n_points = 0;         ///< whose heights are lowered
+  double sq_share = 1;        ///< what is left of Sq over the surface
+  double angle = 0;           ///< of the sharpest edge, in radians
+  Vec3 place = Vec3::Zero();  ///< where that is
+};
+
 /// How one surface becomes rough: all that does not change from one realization to the next.
 struct SurfacePlan {
-  Roughness request;               ///< as used: distance and period filled in
-  std::vector<double> weights;     ///< n_points, from the masks
-  std::vector<double> free;        ///< n_points: 0 where `fixed` alone holds a point, else 1
+  Roughness request;            ///< as used: distance and period filled in
+  std::vector<double> weights;  ///< n_points, from the masks and the edge rule
+  std::vector<double>
+      free;  ///< n_points: 0 where `fixed` or the edge rule alone holds a point, else 1
+  TaperReport taper;
   std::size_t field = 0;           ///< position among the fields
   std::vector<Index> field_point;  ///< n_points positions among the points of the field
 };
@@ -62,8 +73,10 @@ Index n_moving(const RoughSurfaces& rough, const Mesh& mesh, std::span<const Ind
 /// @param field_heights  d at the points of its field
 std::vector<double> heights_of(const SurfacePlan& surface, std::span<const double> field_heights);
 
-/// Positions in `moved`, ascending nodes of the mesh, of those that a surface holds by `fixed`.
-std::vector<std::size_t> fixed_among(const RoughSurfaces& rough, const Mesh& mesh,
-                                     std::span<const Index> moved);
+/// What SurfaceMover needs of each surface.
+std::vector<EdgeOptions> edge_options(const RoughSurfaces& rough);
+
+/// Nodes that a surface holds, ascending: what one fixes, no other moves.
+std::vector<Index> fixed_nodes(const RoughSurfaces& rough, const Mesh& mesh);
 
 }  // namespace roughmesh::detail

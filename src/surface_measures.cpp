@@ -156,26 +156,14 @@ double longest_edge(const Corners& corners) {
   return std::sqrt(longest);
 }
 
-// Area vectors; zero where only round-off would decide the direction.
 std::vector<Vec3> face_vectors(const Surface& surface) {
   std::vector<Vec3> vectors(surface.face_tags.size());
   parallel_for(vectors.size(), grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t f = begin; f < end; ++f) {
-      const auto face = static_cast<Index>(f);
-      const Vec3 vector = vector_of_face(surface, face);
-      const double longest = longest_edge(gather(surface.face(face), surface.points));
-      const double least = surface.dimension == 1 ? 0 : least_area * longest * longest;
-      vectors[f] = vector.norm() > least ? vector : Vec3::Zero();
-    }
+    for (std::size_t f = begin; f < end; ++f)
+      vectors[f] = sound_face_vector(gather(surface.face(static_cast<Index>(f)), surface.points),
+                                     surface.plane_normal);
   });
   return vectors;
-}
-
-bool is_sharp(const Vec3& a, const Vec3& b, double sharp_angle) {
-  if (a.isZero(0) || b.isZero(0)) return false;
-  const double sine = a.cross(b).norm(), cosine = a.dot(b);
-  if (sine < sharp_angle / 2 * cosine) return false;  // most edges: an angle is below its tangent
-  return std::atan2(sine, cosine) > sharp_angle;
 }
 
 std::vector<double> edge_lengths(const EdgeTable& edges, const Surface& surface) {
@@ -216,6 +204,20 @@ SpecialEdges find_special_edges(const EdgeTable& edges, std::span<const Vec3> ve
 }
 
 }  // namespace
+
+Vec3 sound_face_vector(const Corners& corners, const Vec3& plane_normal) {
+  const Vec3 vector = face_vector(corners.span(), plane_normal);
+  const double longest = longest_edge(corners);
+  const double least = corners.n == 2 ? 0 : least_area * longest * longest;
+  return vector.norm() > least ? vector : Vec3::Zero();
+}
+
+bool is_sharp(const Vec3& a, const Vec3& b, double sharp_angle) {
+  if (a.isZero(0) || b.isZero(0)) return false;
+  const double sine = a.cross(b).norm(), cosine = a.dot(b);
+  if (sine < sharp_angle / 2 * cosine) return false;  // most edges: an angle is below its tangent
+  return std::atan2(sine, cosine) > sharp_angle;
+}
 
 void measure_areas(Surface& surface) {
   const std::vector<double> of_faces = face_areas(surface);

@@ -6,6 +6,7 @@
 
 #include "roughmesh/surface.hpp"
 
+#include "polygon.hpp"
 #include "surface_edges.hpp"
 
 namespace roughmesh::detail {
@@ -22,6 +23,12 @@ void measure_normals(const Mesh& mesh, Surface& surface);
 /// corners.
 /// @throws InputError  points whose faces cancel; lines
 void measure_shared_normals(Surface& surface, std::span<const Index> sharer);
+
+/// Area vector of a face (of a line, eq. 35); zero where only round-off would decide its direction.
+Vec3 sound_face_vector(const Corners& corners, const Vec3& plane_normal);
+
+/// Do two faces with these sound vectors enclose more than the angle?
+bool is_sharp(const Vec3& a, const Vec3& b, double sharp_angle);
 
 /// Fills `mesh_size` and the counts of edges.
 void measure_edges(const EdgeTable& edges, double sharp_angle, Surface& surface);

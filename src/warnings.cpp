@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -76,10 +77,10 @@ void warn_of_field(Report& report, const SurfaceReport& surface, const Roughness
 
 void warn_of_surface(Report& report, const Surface& surface, const Roughness& request) {
   const Words words = words_for(surface);
-  if (surface.n_sharp_edges > 0)
+  if (surface.n_sharp_edges > 0 && request.edges == EdgeRule::average)
     warn(report, surface.groups,
          fmt::format("{} sharp {} (more than {:g} degrees): their nodes move along averaged "
-                     "normals, which lowers the roughness there; round them for exact statistics",
+                     "normals, which lowers the roughness there; --edges offset keeps it",
                      surface.n_sharp_edges, words.edges, request.edge_angle));
   if (surface.n_nonmanifold_edges > 0)
     warn(report, surface.groups,
@@ -123,6 +124,17 @@ void warn_of_constant_heights(Report& report, const std::vector<std::string>& gr
                    "less than a covariance error of {:g} leaves certain; take a shorter --length "
                    "(along the surface, where there are several)",
                    sq_over_rq, report.request.tolerance));
+}
+
+void warn_of_taper(Report& report, const Surface& surface, const TaperReport& taper) {
+  if (taper.n_points == 0) return;
+  warn(
+      report, surface.groups,
+      fmt::format("heights are lowered at {} points near {} below 45 degrees (the sharpest, {:.3g} "
+                  "degrees, is at {}), so that the two sides keep apart: Sq of the surface is "
+                  "{:.3g} % of what it is without; round them for whole heights",
+                  taper.n_points, words_for(surface).edges, taper.angle * 180 / std::numbers::pi,
+                  place(taper.place), 100 * taper.sq_share));
 }
 
 void warn_of_scale(Report& report, const SurfaceReport& surface, const Roughness& request) {

@@ -10,6 +10,8 @@
 #include "roughmesh/report.hpp"
 #include "roughmesh/surface.hpp"
 
+#include "rough_surface.hpp"
+
 namespace roughmesh::detail {
 
 /// Sharp edges, edges of many faces, faces that count once.
@@ -22,6 +24,9 @@ void warn_of_period(Report& report, const Surface& surface, const Roughness& req
 /// @param sq_over_rq  expected Sq over Rq
 void warn_of_constant_heights(Report& report, const std::vector<std::string>& groups,
                               double sq_over_rq);
+
+/// Acute edges beside which heights are lowered.
+void warn_of_taper(Report& report, const Surface& surface, const TaperReport& taper);
 
 /// Roughness that the mesh or its size cannot carry; surface.resolution is set.
 void warn_of_scale(Report& report, const SurfaceReport& surface, const Roughness& request);

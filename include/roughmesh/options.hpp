@@ -13,6 +13,7 @@
 
 #include "roughmesh/autocorrelation.hpp"
 #include "roughmesh/cad.hpp"
+#include "roughmesh/displace.hpp"
 #include "roughmesh/distance.hpp"
 #include "roughmesh/error.hpp"
 #include "roughmesh/field.hpp"
@@ -49,6 +50,7 @@ struct Roughness {
   std::optional<DistanceKind> distance = {};
   std::vector<double> period = {};
   std::uint64_t seed = 0;
+  EdgeRule edges = EdgeRule::offset;
   double edge_angle = 40;
   bool flip = false;
   std::vector<std::string> fixed = {};
@@ -141,6 +143,10 @@ void for_each_surface_option(Options& o, Visit&& visit) {
         o.group);
   for_each_autocorrelation_option(o, visit);
   visit(OptionText{"seed", "S", "seed of the ensemble"}, o.seed);
+  visit(OptionText{"edges", "RULE",
+                   "sharp edges and corners: offset keeps the height of every face there, average "
+                   "moves them along mean normals, fix holds them"},
+        o.edges);
   visit(OptionText{"edge_angle", "DEG",
                    "edges with a larger angle between normals are sharp, in degrees"},
         o.edge_angle);
@@ -235,6 +241,10 @@ struct Choices<DistanceKind> {
 template <>
 struct Choices<Method> {
   static constexpr std::array values = {Method::automatic, Method::cholesky, Method::lattice};
+};
+template <>
+struct Choices<EdgeRule> {
+  static constexpr std::array values = {EdgeRule::offset, EdgeRule::average, EdgeRule::fix};
 };
 template <>
 struct Choices<VolumeChoice> {
