@@ -123,7 +123,8 @@ void EdgeMotion::prepare_chains() {
 
 // Triangles, with sectors as their corners, of pieces of surface that have a bound vertex;
 // quadrangles count as the triangles at their corners (docs/math.md, eq. 37).
-std::vector<Simplex> EdgeMotion::faces_to_stretch(std::span<const std::uint8_t> is_inner) const {
+std::vector<std::array<Index, 3>> EdgeMotion::faces_to_stretch(
+    std::span<const std::uint8_t> is_inner) const {
   DisjointSets pieces(sectors_.all.size());
   const auto seats = [&](Index f) {
     return std::span(sectors_.sector_of_corner)
@@ -134,7 +135,7 @@ std::vector<Simplex> EdgeMotion::faces_to_stretch(std::span<const std::uint8_t> 
   std::vector<std::uint8_t> has_bound(sectors_.all.size(), 0);
   for (std::size_t i = 0; i < sectors_.all.size(); ++i)
     if (is_bound(sectors_.all[i].vertex)) has_bound[pieces.smallest(static_cast<Index>(i))] = 1;
-  std::vector<Simplex> triangles;
+  std::vector<std::array<Index, 3>> triangles;
   for (Index f = 0; f < joined_.n_faces(); ++f) {
     const auto corners = seats(f);
     const std::size_t n = corners.size();
@@ -142,7 +143,7 @@ std::vector<Simplex> EdgeMotion::faces_to_stretch(std::span<const std::uint8_t> 
         std::none_of(corners.begin(), corners.end(), [&](Index i) { return is_inner[i] != 0; }))
       continue;
     for (std::size_t k = 0; k < (n == 3 ? 1 : n); ++k)
-      triangles.push_back({corners[(k + n - 1) % n], corners[k], corners[(k + 1) % n], -1});
+      triangles.push_back({corners[(k + n - 1) % n], corners[k], corners[(k + 1) % n]});
   }
   return triangles;
 }
@@ -162,29 +163,16 @@ void EdgeMotion::prepare_faces(std::span<const EdgeOptions> options) {
       for (const Index vertex : joined_.edges.points[e])
         for (Index i = sectors_.offsets[vertex]; i < sectors_.offsets[vertex + 1]; ++i)
           is_inner[i] = 0;
-  const std::vector<Simplex> triangles = faces_to_stretch(is_inner);
+  const std::vector<std::array<Index, 3>> triangles = faces_to_stretch(is_inner);
 
-  NodeRoles roles;
-  roles.unknown.assign(sectors_.all.size(), -1);
-  roles.given.assign(sectors_.all.size(), -1);
-  for (const Simplex& triangle : triangles)
-    for (const Index i : std::span(triangle).first(3)) {
-      if (is_inner[i] != 0) roles.unknown[i] = 0;
-      if (is_bound(sectors_.all[i].vertex)) roles.given[i] = 0;
-    }
-  for (std::size_t i = 0; i < sectors_.all.size(); ++i) {
-    if (roles.unknown[i] == 0) {
-      roles.unknown[i] = roles.n_unknown++;
-      inner_.push_back(static_cast<Index>(i));
-    }
-    if (roles.given[i] == 0) {
-      roles.given[i] = roles.n_given++;
-      given_.push_back(static_cast<Index>(i));
-    }
+  std::vector<NodeRole> roles(sectors_.all.size(), NodeRole::zero);
+  for (std::size_t i = 0; i < roles.size(); ++i) {
+    if (is_inner[i] != 0) roles[i] = NodeRole::sought;
+    if (is_bound(sectors_.all[i].vertex)) roles[i] = NodeRole::given;
   }
   std::vector<Vec3> places;
   for (const Sector& sector : sectors_.all) places.push_back(joined_.positions[sector.vertex]);
-  faces_ = std::make_unique<const HarmonicExtension>(places, triangles, roles);
+  faces_ = std::make_unique<const SmoothExtension>(places, triangles, roles);
 }
 
 Vec3 EdgeMotion::bound_displacement(const Bound& bound,
@@ -229,13 +217,13 @@ void EdgeMotion::equal_images(std::vector<Vec3>& u) const {
 void EdgeMotion::stretch_faces(std::vector<Vec3>& u) const {
   if (!faces_) return;
   std::vector<Vec3> given;
-  for (const Index i : given_) {
+  for (const Index i : faces_->given()) {
     const Sector& sector = sectors_.all[i];
     given.push_back(along_surface(u[sector.vertex], sector.normal));
   }
   const std::vector<Vec3> inner = faces_->extend(given);
   for (std::size_t k = 0; k < inner.size(); ++k) {
-    const Sector& sector = sectors_.all[inner_[k]];
+    const Sector& sector = sectors_.all[faces_->sought()[k]];
     u[sector.vertex] += along_surface(inner[k], sector.normal);
   }
 }

@@ -11,10 +11,10 @@
 #include "roughmesh/displace.hpp"
 
 #include "chains.hpp"
-#include "harmonic.hpp"
 #include "joined_surfaces.hpp"
 #include "least_displacement.hpp"
 #include "sectors.hpp"
+#include "smooth_extension.hpp"
 
 namespace roughmesh::detail {
 
@@ -43,7 +43,7 @@ class EdgeMotion {
   void find_bound(const std::vector<std::vector<Vec3>>& across, const Images& images);
   void prepare_chains();
   void prepare_faces(std::span<const EdgeOptions> options);
-  std::vector<Simplex> faces_to_stretch(std::span<const std::uint8_t> is_inner) const;
+  std::vector<std::array<Index, 3>> faces_to_stretch(std::span<const std::uint8_t> is_inner) const;
 
   bool is_bound(Index vertex) const { return bound_of_vertex_[vertex] >= 0; }
   /// Has something of its own there, or stays where several meet.
@@ -64,8 +64,7 @@ class EdgeMotion {
   std::vector<Bound> bound_;
   Images images_;  ///< bound vertices that move alike
   Chains chains_;
-  std::vector<Index> given_, inner_;  ///< sectors at which faces are held, and those between
-  std::unique_ptr<const HarmonicExtension> faces_;
+  std::unique_ptr<const SmoothExtension> faces_;
 };
 
 }  // namespace roughmesh::detail
