@@ -69,7 +69,7 @@ void print_groups(const Mesh& mesh) {
                most_sizes);
 }
 
-void print_surface(const Surface& surface, const std::string& unit) {
+void print_surface(const Surface& surface, EdgeRule edges, const std::string& unit) {
   const MeshSize& h = surface.mesh_size;
   const bool is_curve = surface.dimension == 1;
   fmt::print("\n{} {}\n", is_curve ? "curve" : "surface", list_of(surface.groups));
@@ -87,8 +87,8 @@ void print_surface(const Surface& surface, const std::string& unit) {
   fmt::print("  {:<34} {:.4g} {}\n", "shortest correlation length 2.5 h",
              sizes_per_length * h.median, unit);
   if (surface.n_sharp_edges > 0)
-    fmt::print("  {:<34} {} (normals are averaged there)\n",
-               is_curve ? "sharp corners" : "sharp edges", surface.n_sharp_edges);
+    fmt::print("  {:<34} {} (--edges {})\n", is_curve ? "sharp corners" : "sharp edges",
+               surface.n_sharp_edges, name(edges));
   if (surface.n_nonmanifold_edges > 0)
     fmt::print("  {:<34} {}\n",
                is_curve ? "points of three or more lines" : "edges of three or more faces",
@@ -187,7 +187,7 @@ void run_info(const RoughenOptions& options, bool has_rms) {
     fmt::print("\n{}\n", error.what());
     return;
   }
-  print_surface(surface, unit);
+  print_surface(surface, options.surfaces.front().edges, unit);
   const SurfaceModel model = surface_model(mesh, surface, with_defaults(request, has_rms, surface));
   const Resolution resolution = assess_resolution(model.surface, model.correlation);
   print_distance(model.request, unit);

@@ -253,6 +253,69 @@ TEST(Edges, NodesOnAWallSlideInIt) {
   EXPECT_THROW(SurfaceMover(test::only(surface), {&options, 1}, constraints), InputError);
 }
 
+namespace {
+
+/// Closed cylinder about z, of radius 1 and height 1: n by m squares around and up, whose diagonals
+/// alternate without a rule, and two fans.
+Mesh cylinder(int n, int m) {
+  std::vector<Vec3> nodes = {{0, 0, 0}, {0, 0, 1}};
+  std::vector<Index> faces;
+  for (int j = 0; j <= m; ++j)
+    for (const Vec3& x : test::circle_points(test::uneven_angles(n), 1))
+      nodes.emplace_back(x.x(), x.y(), static_cast<double>(j) / m);
+  const auto node = [&](int i, int j) { return static_cast<Index>(2 + j * n + i % n); };
+  for (int i = 0; i < n; ++i) {
+    faces.insert(faces.end(), {0, node(i + 1, 0), node(i, 0), 1, node(i, m), node(i + 1, m)});
+    for (int j = 0; j < m; ++j) {
+      const Index p = node(i, j), q = node(i + 1, j), r = node(i + 1, j + 1), s = node(i, j + 1);
+      if ((i * i + j) % 3 == 0)
+        faces.insert(faces.end(), {p, q, r, p, r, s});
+      else
+        faces.insert(faces.end(), {p, q, s, q, r, s});
+    }
+  }
+  return test::surface_mesh(std::move(nodes), std::move(faces));
+}
+
+}  // namespace
+
+// The side of a cylinder stretches with its rims, within itself.
+TEST(Edges, CurvedFacesKeepTheirHeights) {
+  const Surface surface = select_surface(cylinder(40, 6));
+  const std::vector<double> heights = heights_at(surface, bumps);
+  const std::vector<Vec3> u = move(surface, heights);
+  double stretch = 0;
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    const Vec3& x = surface.points[i];
+    if (x.z() == 0 || x.z() == 1) {
+      EXPECT_NEAR(u[i].z(), x.z() == 1 ? heights[i] : -heights[i], round_off);
+    } else {
+      EXPECT_NEAR(u[i].dot(surface.normals[i]), heights[i], round_off);
+      stretch = std::max(stretch, std::abs(u[i].z()));
+    }
+  }
+  EXPECT_GT(stretch, 0.01);
+}
+
+// Each flat strip beside a rim has a right angle there, however its squares are split: of strips
+// of equal width the normal between them is the radius.
+TEST(Edges, NormalsAtEdgesDoNotDependOnDiagonals) {
+  Mesh mesh = cylinder(24, 4);
+  for (std::size_t i = 2; i < mesh.nodes.size(); ++i) {
+    const double turn = 2 * pi * static_cast<double>((i - 2) % 24) / 24;
+    mesh.nodes[i] = Vec3(std::cos(turn), std::sin(turn), mesh.nodes[i].z());
+  }
+  const Surface surface = select_surface(mesh);
+  const std::vector<Vec3> u = move(surface, constant(surface, 0.1));
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    const Vec3 radius(surface.points[i].x(), surface.points[i].y(), 0);
+    const bool is_rim = radius.norm() > 0.5 && surface.points[i].z() == 1;
+    if (is_rim) {
+      EXPECT_NEAR((u[i] - 0.1 * (radius + Vec3(0, 0, 1))).norm(), 0, round_off);
+    }
+  }
+}
+
 TEST(Edges, AverageMovesPointsAlongTheirNormals) {
   for (const Mesh& mesh : {cube(4), l_block(4)}) {
     const Surface surface = select_surface(mesh, everything());
