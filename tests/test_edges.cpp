@@ -362,6 +362,38 @@ TEST(Edges, PointsThatAMaskHoldsStay) {
   }
 }
 
+// A roof whose ridge ends at both sides of a periodic cell, with other triangles at each.
+TEST(Edges, ImagesMoveAlike) {
+  constexpr int n = 8;
+  std::vector<Vec3> nodes;
+  std::vector<Index> faces;
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; j <= n; ++j)
+      nodes.emplace_back(i / 8.0, j / 8.0, j == n / 2 ? 0.5 + 0.1 * std::sin(i * pi / 4) : 0);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const Index p = i * (n + 1) + j, q = p + n + 1, r = q + 1, s = p + 1;
+      if (i > 2)
+        faces.insert(faces.end(), {p, q, r, p, r, s});
+      else
+        faces.insert(faces.end(), {p, q, s, q, r, s});
+    }
+  const Surface surface = select_surface(test::surface_mesh(nodes, faces));
+  const std::vector<double> heights = heights_at(
+      surface, [](const Vec3& x) { return 0.1 * std::cos(2 * pi * x.x()) + 0.1 * x.y(); });
+  EdgeOptions options;
+  const auto moved = [&] {
+    return SurfaceMover(test::only(surface), {&options, 1}).move({&heights, 1});
+  };
+  const std::vector<Vec3> apart = moved();
+  for (const Vec3& x : surface.points)  // one number for x = 0 and x = 1
+    options.images.push_back(
+        static_cast<Index>(std::lround(x.x() == 1 ? 8 * x.y() : 9 * 8 * x.x() + 8 * x.y())));
+  const std::vector<Vec3> alike = moved();
+  EXPECT_NE(apart[n / 2], apart[n * (n + 1) + n / 2]);
+  EXPECT_EQ(alike[n / 2], alike[n * (n + 1) + n / 2]);
+}
+
 // Numbers of the file change no bit; turning the body turns the displacements; a unit scales them.
 TEST(Edges, NumbersDirectionsAndUnitsDoNotMatter) {
   const Mesh mesh = l_block(6);
