@@ -279,9 +279,11 @@ Mesh cylinder(int n, int m) {
 
 }  // namespace
 
-// The side of a cylinder stretches with its rims, within itself.
+// The side of a barrel stretches with its rims, within itself.
 TEST(Edges, CurvedFacesKeepTheirHeights) {
-  const Surface surface = select_surface(cylinder(40, 6));
+  Mesh barrel = cylinder(40, 6);
+  for (Vec3& x : barrel.nodes) x.head<2>() *= 1 + 0.8 * x.z() * (1 - x.z());
+  const Surface surface = select_surface(barrel);
   const std::vector<double> heights = heights_at(surface, bumps);
   const std::vector<Vec3> u = move(surface, heights);
   double stretch = 0;
@@ -321,6 +323,26 @@ TEST(Edges, AverageMovesPointsAlongTheirNormals) {
     const Surface surface = select_surface(mesh, everything());
     const std::vector<double> heights = heights_at(surface, bumps);
     EXPECT_EQ(move(surface, heights, EdgeRule::average), displace(surface, heights));
+  }
+}
+
+// Also beside another surface; points that both have are none of this.
+TEST(Edges, AverageIsTheSameAmongSeveralSurfaces) {
+  const Mesh mesh = cube(4);
+  const std::vector<Surface> surfaces = {select_surface(mesh, {.groups = {"x-", "z-"}}),
+                                         select_surface(mesh, {.groups = {"x+", "z+"}})};
+  const std::vector<EdgeOptions> options(2, EdgeOptions{.rule = EdgeRule::average});
+  std::vector<std::vector<double>> heights;
+  for (const Surface& surface : surfaces) heights.push_back(heights_at(surface, bumps));
+  const SurfaceMover mover(surfaces, options);
+  const std::vector<Vec3> u = mover.move(heights);
+  const Surface& one = surfaces[0];
+  const std::vector<Vec3> expected = test::at_nodes(one, displace(one, heights[0]));
+  for (std::size_t i = 0; i < one.nodes.size(); ++i) {
+    if (std::binary_search(surfaces[1].nodes.begin(), surfaces[1].nodes.end(), one.nodes[i]))
+      continue;
+    const auto at = std::lower_bound(mover.nodes().begin(), mover.nodes().end(), one.nodes[i]);
+    EXPECT_EQ(u[at - mover.nodes().begin()], expected[i]);
   }
 }
 
