@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <cstdint>
 #include <numbers>
+#include <utility>
 
 #include "joined_surfaces.hpp"
 #include "parallel.hpp"
@@ -92,7 +93,7 @@ class TaperCubes {
     for (const Taper& taper : tapers)
       size_ = std::max(size_, taper.reach + taper.edge.bounds().sizes().norm() / 2);
     for (std::size_t i = 0; i < tapers.size(); ++i)
-      entries_.push_back({cube(tapers[i].middle), static_cast<std::int64_t>(i)});
+      entries_.emplace_back(cube(tapers[i].middle), i);
     std::sort(entries_.begin(), entries_.end());
   }
 
@@ -110,11 +111,7 @@ class TaperCubes {
 
  private:
   using Cube = std::array<std::int64_t, 3>;
-  struct Entry {
-    Cube cube;
-    std::int64_t taper;
-    friend auto operator<=>(const Entry&, const Entry&) = default;
-  };
+  using Entry = std::pair<Cube, std::size_t>;  // and the number of a taper
 
   Cube cube(const Vec3& x) const {
     const Vec3 c = ((x - tapers_[0].middle) / size_).array().floor();
@@ -125,8 +122,8 @@ class TaperCubes {
     double nearest = 2;
     const Entry first{cube, 0};
     for (auto at = std::lower_bound(entries_.begin(), entries_.end(), first);
-         at != entries_.end() && at->cube == cube; ++at) {
-      const Taper& taper = tapers_[at->taper];
+         at != entries_.end() && at->first == cube; ++at) {
+      const Taper& taper = tapers_[at->second];
       nearest = std::min(nearest, std::sqrt(squared_distance(taper.edge, x)) / taper.reach);
     }
     return nearest;

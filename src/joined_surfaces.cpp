@@ -80,6 +80,7 @@ JoinedSurfaces join_surfaces(std::span<const Surface> surfaces, std::span<const 
 
 std::vector<Vec3> sound_vectors(const JoinedSurfaces& joined) {
   std::vector<Vec3> vectors;
+  vectors.reserve(joined.surface_of_face.size());
   for (Index f = 0; f < joined.n_faces(); ++f)
     vectors.push_back(
         sound_face_vector(gather(joined.face(f), joined.positions), joined.plane_normal));

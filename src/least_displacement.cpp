@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include <Eigen/Eigenvalues>
 
@@ -40,7 +41,7 @@ LeastDisplacement::LeastDisplacement(std::span<const Vec3> normals, std::span<co
   // What the planes leave; of unit normals at least one square is 1 or more.
   Eigen::Matrix3d left = Eigen::Matrix3d::Identity();
   for_each_mode(directions, 1, [&](double, const Vec3& mode) { left -= mode * mode.transpose(); });
-  int n_kept = 3 - static_cast<int>(left.trace() + 0.5);
+  long n_kept = 3 - std::lround(left.trace());
   free_ = left;
   for_each_mode(left * squares_of(normals) * left, 1, [&](double square, const Vec3& mode) {
     inverse_ += mode * mode.transpose() / square;

@@ -26,6 +26,7 @@ std::vector<EdgeKind> kinds_of_edges(std::span<const EdgeOptions> options,
                                      const JoinedSurfaces& joined) {
   const std::vector<Vec3> vectors = sound_vectors(joined);
   std::vector<EdgeKind> kinds;
+  kinds.reserve(joined.edges.points.size());
   for (Index e = 0; e < joined.edges.size(); ++e)
     kinds.push_back(kind_of(joined.edges.edge(e), options, joined, vectors));
   return kinds;
