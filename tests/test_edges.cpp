@@ -245,6 +245,7 @@ TEST(Edges, AverageIsTheSameAmongSeveralSurfaces) {
                                          select_surface(mesh, {.groups = {"x+", "z+"}})};
   const std::vector<EdgeOptions> options(2, EdgeOptions{.rule = EdgeRule::average});
   std::vector<std::vector<double>> heights;
+  heights.reserve(surfaces.size());
   for (const Surface& surface : surfaces) heights.push_back(heights_at(surface, bumps));
   const SurfaceMover mover(surfaces, options);
   const std::vector<Vec3> u = mover.move(heights);
