@@ -356,7 +356,8 @@ class Run {
                    report_);
     const MovedVolume moved = timed(times().volume, [&] { return mover.move(displacements); });
     const Mesh& smooth = moved.split ? *moved.split : mesh_;
-    if (rough.mesh.nodes.size() != smooth.nodes.size()) rough.mesh = smooth;
+    if (moved.split || is_split_) rough.mesh = smooth;  // else only its nodes differ
+    is_split_ = moved.split != nullptr;
     rough.mesh.nodes = moved.nodes;
     rough.check =
         timed(times().check, [&] { return check_mesh(smooth, moved.nodes, *enclosure_); });
@@ -400,6 +401,7 @@ class Run {
   std::optional<SurfaceChecker> checker_;
   Index n_wall_nodes_ = 0;  // that move
   double quality_before_ = 0;
+  bool is_split_ = false;  // the mesh handed over last has elements of its own
   std::optional<Enclosure> enclosure_;
   const Watch& watch_;
   std::optional<std::uint64_t> realization_;  // being made
