@@ -134,20 +134,31 @@ LBFGSpp::LBFGSParam<double> parameters(const UntangleOptions& options) {
   return result;
 }
 
-// One round of L-BFGS. Where its line search fails, which it tells by an exception, it has gone as
-// far as it can.
+// Minimizes from x on; false where the line search fails, which it tells by exceptions of these
+// kinds.
+template <int dim>
+bool minimize(LBFGSpp::LBFGSSolver<double>& solver, Distortion<dim>& distortion,
+              Eigen::VectorXd& x) {
+  double value = 0;
+  try {
+    solver.minimize(distortion, x, value);
+  } catch (const std::runtime_error&) {
+    return false;
+  } catch (const std::logic_error&) {
+    return false;
+  }
+  return true;
+}
+
+// One round of L-BFGS. Where it fails, it has gone as far as it can.
 template <int dim>
 void descend(Distortion<dim>& distortion, const UntangleOptions& options, Eigen::VectorXd& x) {
   const auto parameter = parameters(options);
   LBFGSpp::LBFGSSolver<double> solver(parameter);
   Eigen::VectorXd start = x, gradient;
   const double value_at_start = distortion(start, gradient);
-  try {
-    double value = 0;
-    solver.minimize(distortion, x, value);
-  } catch (const std::exception&) {
-    if (!x.allFinite() || !(distortion(x, gradient) <= value_at_start)) x = std::move(start);
-  }
+  if (minimize(solver, distortion, x)) return;
+  if (!x.allFinite() || !(distortion(x, gradient) <= value_at_start)) x = std::move(start);
 }
 
 // Eq. 52.

@@ -349,7 +349,8 @@ class Run {
     const std::vector<Vec3> displacements =
         timed(times().displace, [&] { return surface_mover_->move(heights); });
     rough.surface_check = timed(times().check, [&] { return check_surfaces(displacements); });
-    detail::warn_of_input_intersections(report_, rough.surface_check);
+    if (report_.realizations.empty())
+      detail::warn_of_input_intersections(report_, rough.surface_check);
     refuse_surface(rough.surface_check, rough.realization,
                    remedy(rough_.fields, n_wall_nodes_,
                           detail::lower_rms(rough.surface_check, report_.request)),
