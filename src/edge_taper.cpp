@@ -27,7 +27,7 @@ constexpr double longest_reach = 10;
 
 // An acute edge and the distance at which its taper ends.
 struct Taper {
-  Simplex edge;
+  PlacedSimplex edge;
   Vec3 middle = Vec3::Zero();
   double angle = 0, reach = 0;
 };
@@ -79,7 +79,7 @@ std::vector<Taper> find_tapers(std::span<const Surface> surfaces,
     const auto& [a, b] = joined.edges.points[e];
     const std::array<Vec3, 2> ends = {joined.positions[a], joined.positions[b]};
     tapers.push_back(
-        {Simplex(std::span(ends).first(a == b ? 1 : 2)), (ends[0] + ends[1]) / 2, angle,
+        {PlacedSimplex(std::span(ends).first(a == b ? 1 : 2)), (ends[0] + ends[1]) / 2, angle,
          std::min(whole_thickness * rq / (2 * std::tan(angle / 2)), longest_reach * h)});
   }
   return tapers;

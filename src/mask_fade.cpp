@@ -34,13 +34,13 @@ PhysicalGroup require_group(const Mesh& mesh, const Surface& surface, const std:
 
 // ---- Borders: where one face, or one line of a curve, ends ----
 
-std::vector<Simplex> border_of(const Surface& surface) {
+std::vector<PlacedSimplex> border_of(const Surface& surface) {
   if (surface.border_edges.empty())
     throw InputError(
         "fade: the surface is closed and has no border to fade from; name a physical group to fade "
         "from, or leave the fade out");
   const auto n_corners = static_cast<std::size_t>(surface.dimension);
-  std::vector<Simplex> border;
+  std::vector<PlacedSimplex> border;
   for (const auto& [i, j] : surface.border_edges) {
     const std::array ends = {surface.points[i], surface.points[j]};
     border.emplace_back(std::span(ends).first(n_corners));
@@ -85,13 +85,13 @@ Eigen::AlignedBox3d bounds(std::span<const Vec3> positions) {
 }
 
 // Without the elements from which no point of the surface is within the reach.
-std::vector<Simplex> elements_of(const Mesh& mesh, const Surface& surface,
-                                 const PhysicalGroup& group, double reach) {
+std::vector<PlacedSimplex> elements_of(const Mesh& mesh, const Surface& surface,
+                                       const PhysicalGroup& group, double reach) {
   const std::vector<Vec3> positions = positions_on_points(mesh, surface);
   Eigen::AlignedBox3d near = bounds(surface.points);
   near.min().array() -= reach;
   near.max().array() += reach;
-  std::vector<Simplex> elements;
+  std::vector<PlacedSimplex> elements;
   for (const ElementBlock& block : mesh.blocks) {
     if (!is_in_group(block, group)) continue;
     for (Index e = 0; e < block.size(); ++e) {

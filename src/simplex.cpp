@@ -32,7 +32,7 @@ double squared_distance_to_triangle(const Vec3& a, const Vec3& b, const Vec3& c,
   return std::min(to_sides, height * height / square);
 }
 
-void append_polygon(std::span<const Vec3> x, std::vector<Simplex>& simplices) {
+void append_polygon(std::span<const Vec3> x, std::vector<PlacedSimplex>& simplices) {
   const auto triangle = [&](std::size_t a, std::size_t b, std::size_t c) {
     simplices.emplace_back(std::array{x[a], x[b], x[c]});
   };
@@ -45,27 +45,28 @@ void append_polygon(std::span<const Vec3> x, std::vector<Simplex>& simplices) {
 
 }  // namespace
 
-Simplex::Simplex(std::span<const Vec3> positions) : n_vertices(static_cast<int>(positions.size())) {
+PlacedSimplex::PlacedSimplex(std::span<const Vec3> positions)
+    : n_vertices(static_cast<int>(positions.size())) {
   vertices.fill(positions.front());
   std::copy(positions.begin(), positions.end(), vertices.begin());
   std::sort(vertices.begin(), vertices.begin() + n_vertices, stands_before);
 }
 
-Eigen::AlignedBox3d Simplex::bounds() const {
+Eigen::AlignedBox3d PlacedSimplex::bounds() const {
   Eigen::AlignedBox3d box(vertices.front());
   for (const Vec3& vertex : vertices) box.extend(vertex);
   return box;
 }
 
-bool operator<(const Simplex& a, const Simplex& b) {
+bool operator<(const PlacedSimplex& a, const PlacedSimplex& b) {
   if (a.n_vertices != b.n_vertices) return a.n_vertices < b.n_vertices;
   return std::lexicographical_compare(a.vertices.begin(), a.vertices.end(), b.vertices.begin(),
                                       b.vertices.end(), stands_before);
 }
 
-bool operator==(const Simplex& a, const Simplex& b) { return !(a < b) && !(b < a); }
+bool operator==(const PlacedSimplex& a, const PlacedSimplex& b) { return !(a < b) && !(b < a); }
 
-double squared_distance(const Simplex& simplex, const Vec3& x) {
+double squared_distance(const PlacedSimplex& simplex, const Vec3& x) {
   const auto& [a, b, c] = simplex.vertices;
   if (simplex.n_vertices == 1) return (x - a).squaredNorm();
   if (simplex.n_vertices == 2) return squared_distance_to_segment(a, b, x);
@@ -73,7 +74,7 @@ double squared_distance(const Simplex& simplex, const Vec3& x) {
 }
 
 void append_simplices(ElementShape shape, std::span<const Vec3> corners,
-                      std::vector<Simplex>& simplices) {
+                      std::vector<PlacedSimplex>& simplices) {
   if (dimension(shape) < 2) simplices.emplace_back(corners);
   if (dimension(shape) == 2) append_polygon(corners, simplices);
   if (dimension(shape) < 3) return;

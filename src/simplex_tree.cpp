@@ -22,8 +22,8 @@ int longest_axis(const Eigen::AlignedBox3d& box) {
 }
 
 // Twice the middle; ties are broken by the simplices themselves, so that each half is one set.
-bool lies_before(const Simplex& a, const Simplex& b, int axis) {
-  const auto place = [axis](const Simplex& s) {
+bool lies_before(const PlacedSimplex& a, const PlacedSimplex& b, int axis) {
+  const auto place = [axis](const PlacedSimplex& s) {
     const auto [low, high] =
         std::minmax({s.vertices[0][axis], s.vertices[1][axis], s.vertices[2][axis]});
     return low + high;
@@ -34,7 +34,7 @@ bool lies_before(const Simplex& a, const Simplex& b, int axis) {
 
 }  // namespace
 
-SimplexTree::SimplexTree(std::vector<Simplex> simplices) : simplices_(std::move(simplices)) {
+SimplexTree::SimplexTree(std::vector<PlacedSimplex> simplices) : simplices_(std::move(simplices)) {
   std::sort(simplices_.begin(), simplices_.end());
   simplices_.erase(std::unique(simplices_.begin(), simplices_.end()), simplices_.end());
   if (simplices_.size() > std::numeric_limits<std::uint32_t>::max())
@@ -53,7 +53,7 @@ std::uint32_t SimplexTree::add_nodes(std::uint32_t first, std::uint32_t last) {
   const std::uint32_t middle = first + (last - first) / 2;
   std::nth_element(simplices_.begin() + first, simplices_.begin() + middle,
                    simplices_.begin() + last,
-                   [axis = longest_axis(box)](const Simplex& a, const Simplex& b) {
+                   [axis = longest_axis(box)](const PlacedSimplex& a, const PlacedSimplex& b) {
                      return lies_before(a, b, axis);
                    });
   add_nodes(first, middle);

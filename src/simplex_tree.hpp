@@ -13,7 +13,7 @@ namespace roughmesh::detail {
 /// distance. O(N log N) to make.
 class SimplexTree {
  public:
-  explicit SimplexTree(std::vector<Simplex> simplices);
+  explicit SimplexTree(std::vector<PlacedSimplex> simplices);
 
   /// Distance from x to the nearest simplex if that is at most `limit`, else infinity.
   double distance_within(const Vec3& x, double limit) const;
@@ -28,7 +28,7 @@ class SimplexTree {
 
   std::uint32_t add_nodes(std::uint32_t first, std::uint32_t last);
 
-  std::vector<Simplex> simplices_;
+  std::vector<PlacedSimplex> simplices_;
   std::vector<Node> nodes_;
 };
 

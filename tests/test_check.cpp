@@ -11,6 +11,7 @@
 
 #include "parallel.hpp"
 #include "support/cells.hpp"
+#include "support/folded_plate.hpp"
 #include "support/meshes.hpp"
 
 using namespace roughmesh;
@@ -177,15 +178,7 @@ TEST(Check, ZeroJacobians) {
 
 // In the plane a triangle is folded when its corners run clockwise.
 TEST(Check, FoldedTrianglesOfASurfaceMesh) {
-  const Mesh mesh = test::plate(6);
-  std::vector<Vec3> moved = mesh.nodes;
-  for (const std::size_t node : {16U, 24U, 31U}) moved[node] += Vec3(0.31, 0.05, 0);
-  std::int64_t n_clockwise = 0;
-  const ElementBlock& block = mesh.blocks[0];
-  for (Index e = 0; e < block.size(); ++e) {
-    const auto t = block.element(e);
-    n_clockwise += (moved[t[1]] - moved[t[0]]).cross(moved[t[2]] - moved[t[0]]).z() < 0;
-  }
+  const auto [mesh, moved, n_clockwise] = test::folded_plate();
   ASSERT_GT(n_clockwise, 0);
   const MeshCheck check = check_mesh(mesh, moved);
   EXPECT_EQ(check.inverted_elements, n_clockwise);

@@ -11,7 +11,7 @@
 #include "simplex_tree.hpp"
 
 using namespace roughmesh;
-using detail::Simplex;
+using detail::PlacedSimplex;
 using detail::SimplexTree;
 
 namespace {
@@ -29,14 +29,14 @@ class Random {
     for (int k = 0; k < n; ++k) x.push_back(in_cube());
     return x;
   }
-  Simplex simplex() {
+  PlacedSimplex simplex() {
     const int n = 1 + static_cast<int>(3 * uniform());
     std::vector<Vec3> x = vertices(n);
     for (int k = 1; k < n; ++k) x[k] = x[0] + 0.2 * (x[k] - x[0]);
-    return Simplex(x);
+    return PlacedSimplex(x);
   }
-  std::vector<Simplex> simplices(int n) {
-    std::vector<Simplex> all;
+  std::vector<PlacedSimplex> simplices(int n) {
+    std::vector<PlacedSimplex> all;
     for (int k = 0; k < n; ++k) all.push_back(simplex());
     return all;
   }
@@ -46,7 +46,7 @@ class Random {
 };
 
 double distance(const std::vector<Vec3>& vertices, const Vec3& x) {
-  return std::sqrt(detail::squared_distance(Simplex(vertices), x));
+  return std::sqrt(detail::squared_distance(PlacedSimplex(vertices), x));
 }
 
 // Round-off of coordinates of size 1, and of a normal that a thin triangle makes worse.
@@ -112,19 +112,20 @@ TEST(SimplexTree, ATriangleWithoutAreaIsItsSegments) {
 TEST(SimplexTree, NearestOfManyIsTheSmallestDistance) {
   Random random(4);
   for (const int n : {1, 4, 5, 100, 1000}) {
-    const std::vector<Simplex> all = random.simplices(n);
+    const std::vector<PlacedSimplex> all = random.simplices(n);
     const SimplexTree tree(all);
     for (int k = 0; k < 300; ++k) {
       const Vec3 x = 2 * random.in_cube() - Vec3(0.5, 0.5, 0.5);
       double smallest = infinity;
-      for (const Simplex& s : all) smallest = std::min(smallest, detail::squared_distance(s, x));
+      for (const PlacedSimplex& s : all)
+        smallest = std::min(smallest, detail::squared_distance(s, x));
       EXPECT_EQ(tree.distance_within(x, 10), std::sqrt(smallest)) << n << " simplices";
     }
   }
 }
 
 TEST(SimplexTree, BeyondTheLimitThereIsNothing) {
-  const SimplexTree tree({Simplex(std::vector<Vec3>{{0, 0, 0}})});
+  const SimplexTree tree({PlacedSimplex(std::vector<Vec3>{{0, 0, 0}})});
   EXPECT_EQ(tree.distance_within({0, 3, 4}, 5), 5);
   EXPECT_EQ(tree.distance_within({0, 3, 4}, 4.999), infinity);
   EXPECT_EQ(tree.distance_within({0, 0, 0}, 1e-300), 0);
@@ -134,12 +135,13 @@ TEST(SimplexTree, BeyondTheLimitThereIsNothing) {
 
 TEST(SimplexTree, OrderAndRepetitionChangeNoBit) {
   Random random(5);
-  const std::vector<Simplex> all = random.simplices(500);
-  std::vector<Simplex> other;
-  for (const Simplex& s : all) {
+  const std::vector<PlacedSimplex> all = random.simplices(500);
+  std::vector<PlacedSimplex> other;
+  for (const PlacedSimplex& s : all) {
     std::vector<Vec3> turned(s.vertices.begin(), s.vertices.begin() + s.n_vertices);
     std::reverse(turned.begin(), turned.end());
-    other.insert(other.begin() + static_cast<std::ptrdiff_t>(other.size() / 3), Simplex(turned));
+    other.insert(other.begin() + static_cast<std::ptrdiff_t>(other.size() / 3),
+                 PlacedSimplex(turned));
     if (other.size() % 7 == 0) other.push_back(s);
   }
   const SimplexTree tree(all), reordered(other);
@@ -152,7 +154,7 @@ TEST(SimplexTree, OrderAndRepetitionChangeNoBit) {
 // One place for all boxes: splitting must go on by number, not by position.
 TEST(SimplexTree, ManySimplicesInOnePlaceAreSplitAllTheSame) {
   Random random(6);
-  std::vector<Simplex> star;
+  std::vector<PlacedSimplex> star;
   for (int k = 0; k < 20000; ++k) {
     const Vec3 arm = random.direction();
     star.emplace_back(std::vector<Vec3>{arm, -arm});

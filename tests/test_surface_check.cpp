@@ -13,6 +13,7 @@
 #include "support/cells.hpp"
 #include "support/contact.hpp"
 #include "support/errors.hpp"
+#include "support/folded_plate.hpp"
 #include "support/meshes.hpp"
 #include "support/only.hpp"
 #include "support/planar.hpp"
@@ -334,15 +335,7 @@ TEST(SurfaceCheck, WhatDoesNotMoveIsNotLookedAt) {
 // ---- Faces that turn or vanish ----
 
 TEST(SurfaceCheck, FoldedFacesAreCounted) {
-  const Mesh mesh = test::plate(6);
-  std::vector<Vec3> moved = mesh.nodes;
-  for (const std::size_t node : {16U, 24U, 31U}) moved[node] += Vec3(0.31, 0.05, 0);
-  std::int64_t n_clockwise = 0;
-  const ElementBlock& block = mesh.blocks[0];
-  for (Index e = 0; e < block.size(); ++e) {
-    const auto t = block.element(e);
-    n_clockwise += (moved[t[1]] - moved[t[0]]).cross(moved[t[2]] - moved[t[0]]).z() < 0;
-  }
+  const auto [mesh, moved, n_clockwise] = test::folded_plate();
   const SurfaceCheck result = check(mesh, moved);
   EXPECT_EQ(result.folded_faces, n_clockwise);
   EXPECT_GT(result.self_intersections, 0);  // folded onto each other, in one plane

@@ -22,8 +22,9 @@ struct Finding {
   double limit = 0;           ///< value must be above this
 };
 
-/// The boundary of a mesh, prepared once, to compare what its elements fill with what it encloses:
-/// overlapping, missing or doubled elements leave a difference, also where each is valid.
+/// The boundary of a mesh, prepared once, to compare what elements fill with what it encloses:
+/// where they were divided, a missing, doubled or badly joined one leaves a difference; moves do
+/// not.
 class Enclosure {
  public:
   /// @param mesh  of volumes or planar
