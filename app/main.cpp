@@ -10,6 +10,7 @@
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "interrupt.hpp"
+#include "memory.hpp"
 
 namespace {
 
@@ -43,6 +44,7 @@ void run(const std::vector<std::string>& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  app::keep_freed_memory();
   app::handle_signals();
   try {
     run({argv + 1, argv + argc});

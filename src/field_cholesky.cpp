@@ -27,18 +27,10 @@ constexpr double largest_semidefinite_remainder = 1.5 * remaining_diagonal;
 constexpr double tie_separation = 1e-10;
 constexpr double eigenvalue_smoothing = 1e-10;
 
-double gibibytes(double bytes) { return bytes / (1 << 30); }
-
-/// Before anything is allocated, because a system that promises more memory than it has kills the
-/// process later.
-void require_memory(std::size_t n, const char* purpose) {
-  const double needed = static_cast<double>(n) * static_cast<double>(n) * sizeof(double);
-  const auto free = free_memory();
-  if (!free || needed <= static_cast<double>(*free)) return;
-  throw InputError(fmt::format(
-      "{} of {} points: {:.2f} GiB of memory needed, {:.2f} GiB free; use fewer points (a coarser "
-      "mesh or a smaller group) or a machine with more memory",
-      purpose, n, gibibytes(needed), gibibytes(static_cast<double>(*free))));
+void require_matrix(std::size_t n, const char* purpose) {
+  require_memory(static_cast<double>(n) * static_cast<double>(n) * sizeof(double),
+                 fmt::format("{} of {} points", purpose, n),
+                 "use fewer points (a coarser mesh or a smaller group)");
 }
 
 /// Lower triangle of R; returns the smallest correlation of two points, 1 if there is only one.
@@ -124,7 +116,7 @@ double variance_change(const Factor& factor) {
 
 CholeskyField prepare_by_eigenvalues(DenseMatrix a, CholeskySummary summary) {
   const std::size_t n = a.n_rows();
-  require_memory(n, "eigenvalues of the indefinite autocorrelation matrix");
+  require_matrix(n, "eigenvalues of the indefinite autocorrelation matrix");
   const std::vector<double> eigenvalues = spectral_root(a, eigenvalue_smoothing);
   const auto n_below = [&](double limit) {
     return static_cast<Index>(std::lower_bound(eigenvalues.begin(), eigenvalues.end(), limit) -
@@ -206,7 +198,7 @@ AutocorrelationMatrix autocorrelation_matrix(const Correlation& correlation) {
 }
 
 CholeskyField factorize_correlation(const AutocorrelationMatrix& matrix) {
-  require_memory(matrix.n, "autocorrelation matrix");
+  require_matrix(matrix.n, "autocorrelation matrix");
   try {
     return prepare(matrix);
   } catch (const std::bad_alloc&) {

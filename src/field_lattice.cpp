@@ -218,16 +218,6 @@ void require_reachable(double tolerance) {
                   tolerance, smallest_tolerance));
 }
 
-void require_memory(Index n) {
-  const double needed = bytes_per_point * static_cast<double>(n);
-  const auto free = free_memory();
-  if (!free || needed <= static_cast<double>(*free)) return;
-  throw InputError(
-      fmt::format("field of {} points: {:.2f} GiB of memory needed, {:.2f} GiB free; use a coarser "
-                  "mesh or a machine with more memory",
-                  n, needed / 0x1p30, static_cast<double>(*free) / 0x1p30));
-}
-
 }  // namespace
 
 std::string lattice_obstacle(const Correlation& correlation) {
@@ -250,7 +240,8 @@ PreparedField prepare_lattice(const Correlation& correlation, const FieldOptions
   const std::string obstacle = lattice_obstacle(correlation);
   if (!obstacle.empty()) throw InputError(obstacle);
   require_reachable(options.tolerance);
-  require_memory(correlation.n_points());
+  require_memory(bytes_per_point * static_cast<double>(correlation.n_points()),
+                 fmt::format("field of {} points", correlation.n_points()), "use a coarser mesh");
   auto field = std::make_unique<LatticeField>(correlation, options);
   PreparedField prepared;
   prepared.summary = field->summary();

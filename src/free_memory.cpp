@@ -6,6 +6,14 @@
 #include <sstream>
 #include <string>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+#include <fmt/format.h>
+
+#include "roughmesh/error.hpp"
+
 namespace roughmesh::detail {
 namespace {
 
@@ -46,6 +54,13 @@ std::optional<std::uint64_t> smaller(std::optional<std::uint64_t> a,
                                      std::optional<std::uint64_t> b) {
   if (!a || !b) return a ? a : b;
   return std::min(*a, *b);
+}
+
+/// What was freed but kept for later arrays.
+void return_unused_memory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
 }
 
 std::optional<std::uint64_t> free_in_group(const fs::path& folder, const GroupFiles& files) {
@@ -95,6 +110,20 @@ std::optional<std::uint64_t> free_memory(const fs::path& root) {
   auto available = read_entry(root / "proc/meminfo", "MemAvailable:");
   if (available) *available *= 1024;
   return smaller(available, free_in_own_groups(root));
+}
+
+void require_memory(double bytes, const std::string& thing, const std::string& remedy) {
+  const auto is_enough = [&](const std::optional<std::uint64_t>& free) {
+    return !free || bytes <= static_cast<double>(*free);
+  };
+  if (is_enough(free_memory())) return;
+  return_unused_memory();
+  const auto free = free_memory();
+  if (is_enough(free)) return;
+  throw InputError(
+      fmt::format("{}: {:.2f} GiB of memory needed, {:.2f} GiB free; {} or a machine "
+                  "with more memory",
+                  thing, bytes / 0x1p30, static_cast<double>(*free) / 0x1p30, remedy));
 }
 
 }  // namespace roughmesh::detail

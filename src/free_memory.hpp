@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 namespace roughmesh::detail {
 
@@ -13,5 +14,13 @@ namespace roughmesh::detail {
 /// system does not tell.
 /// @param root  folder that holds proc/ and sys/
 std::optional<std::uint64_t> free_memory(const std::filesystem::path& root = "/");
+
+/// Before anything is allocated, because a system that promises more memory than it has kills the
+/// process later.
+/// @param bytes   needed
+/// @param thing   that needs them, "field of 7 points"
+/// @param remedy  "use a coarser mesh"
+/// @throws InputError  fewer are free
+void require_memory(double bytes, const std::string& thing, const std::string& remedy);
 
 }  // namespace roughmesh::detail

@@ -25,18 +25,30 @@ double reduced(double x, double period) {
 }
 
 /// By coordinates, so that equal places follow each other; places in a smallest cell are few.
+/// @param codes  in the order of the places before, ascending
 void sort_within_cells(const std::vector<Vec3>& places, const std::vector<std::uint64_t>& codes,
                        std::vector<std::uint32_t>& order) {
   const auto is_before = [&](std::uint32_t i, std::uint32_t j) {
     const Vec3 &x = places[i], &y = places[j];
     return std::tie(x[0], x[1], x[2], i) < std::tie(y[0], y[1], y[2], j);
   };
-  for (auto first = order.begin(); first != order.end();) {
-    const auto end = std::find_if(first, order.end(),
-                                  [&](std::uint32_t i) { return codes[i] != codes[*first]; });
-    if (end - first > 2) std::sort(first, end, is_before);
-    first = end;
+  for (std::size_t first = 0, end = 0; first < codes.size(); first = end) {
+    for (end = first + 1; end < codes.size() && codes[end] == codes[first];) ++end;
+    if (end - first > 1)
+      std::sort(order.begin() + static_cast<std::ptrdiff_t>(first),
+                order.begin() + static_cast<std::ptrdiff_t>(end), is_before);
   }
+}
+
+/// values[order[i]] for each i.
+template <class Value>
+std::vector<Value> in_order(const std::vector<Value>& values,
+                            const std::vector<std::uint32_t>& order) {
+  std::vector<Value> result(values.size());
+  parallel_for(values.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) result[i] = values[order[i]];
+  });
+  return result;
 }
 
 }  // namespace
@@ -91,16 +103,9 @@ SortedPlaces::SortedPlaces(std::vector<Vec3> places, double cell) {
   });
   const std::vector<Index> order = morton_order(codes_);
   order_.assign(order.begin(), order.end());
+  codes_ = in_order(codes_, order_);
   sort_within_cells(places, codes_, order_);
-  places_.resize(places.size());
-  std::vector<std::uint64_t> sorted(codes_.size());
-  parallel_for(places.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      places_[i] = places[order_[i]];
-      sorted[i] = codes_[order_[i]];
-    }
-  });
-  codes_ = std::move(sorted);
+  places_ = in_order(places, order_);
 }
 
 int SortedPlaces::n_doublings(double edge) const {

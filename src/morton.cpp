@@ -2,8 +2,11 @@
 #include "morton.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 
 #include "parallel.hpp"
 
@@ -25,6 +28,49 @@ std::uint64_t spread_bits(std::uint64_t x) {
 struct Key {
   std::uint64_t code;
   Index point;
+};
+
+bool operator<(const Key& a, const Key& b) {
+  return a.code != b.code ? a.code < b.code : a.point < b.point;
+}
+
+/// Codes by their leading bits. Sorting each bucket by itself stays in the caches of a core, so
+/// that many points take hardly longer each than a few.
+class Buckets {
+ public:
+  explicit Buckets(std::span<const std::uint64_t> codes)
+      : first_(*std::min_element(codes.begin(), codes.end())),
+        shift_(shift(*std::max_element(codes.begin(), codes.end()) - first_)) {
+    ends_.fill(0);
+    for (const std::uint64_t code : codes) ++ends_[number(code)];
+    std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
+  }
+
+  std::vector<Key> sorted(std::span<const std::uint64_t> codes) const {
+    std::vector<Key> keys(codes.size());
+    auto next = ends_;
+    for (std::size_t i = codes.size(); i-- > 0;)
+      keys[--next[number(codes[i])]] = {codes[i], static_cast<Index>(i)};
+    parallel_for(next.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t b = begin; b < end; ++b)
+        std::sort(keys.data() + next[b], keys.data() + ends_[b]);
+    });
+    return keys;
+  }
+
+ private:
+  static constexpr int bits = 12;
+
+  static int shift(std::uint64_t largest) {
+    return std::max(static_cast<int>(std::bit_width(largest)) - bits, 0);
+  }
+  std::size_t number(std::uint64_t code) const {
+    return static_cast<std::size_t>((code - first_) >> shift_);
+  }
+
+  std::uint64_t first_;
+  int shift_;
+  std::array<std::size_t, std::size_t{1} << bits> ends_;
 };
 
 }  // namespace
@@ -51,12 +97,10 @@ std::vector<std::uint64_t> morton_codes(std::span<const Vec3> places, double shi
 }
 
 std::vector<Index> morton_order(std::span<const std::uint64_t> codes) {
-  std::vector<Key> keys(codes.size());
-  for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = {codes[i], static_cast<Index>(i)};
-  parallel_sort(std::span(keys), [](const Key& a, const Key& b) {
-    return a.code != b.code ? a.code < b.code : a.point < b.point;
-  });
-  std::vector<Index> order(keys.size());
+  std::vector<Index> order(codes.size());
+  if (codes.empty()) return order;
+  const Buckets buckets(codes);
+  const std::vector<Key> keys = buckets.sorted(codes);
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = keys[k].point;
   return order;
 }

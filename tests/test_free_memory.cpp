@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "roughmesh/error.hpp"
+
 #include "free_memory.hpp"
 
 namespace roughmesh::detail {
@@ -68,6 +70,20 @@ TEST_F(FreeMemory, IsNotMisledByFilesThatMakeNoSense) {
   write("proc/meminfo", "MemAvailable: many kB\n\n:::\n");
   write("proc/self/cgroup", "\n0\n::\n");
   EXPECT_FALSE(free_memory(root_));
+}
+
+TEST(RequireMemory, TellsWhatIsNeededAndWhatHelps) {
+  EXPECT_NO_THROW(require_memory(1, "field of 1 points", "use a coarser mesh"));
+  try {
+    require_memory(0x1p70, "field of 7 points", "use a coarser mesh");
+    if (free_memory()) ADD_FAILURE() << "2^70 bytes are not free";
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    EXPECT_TRUE(text.starts_with("field of 7 points: 1099511627776.00 GiB of memory needed, "))
+        << text;
+    EXPECT_TRUE(text.ends_with(" GiB free; use a coarser mesh or a machine with more memory"))
+        << text;
+  }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -74,6 +75,23 @@ TEST(Morton, PlacesWithoutExtentAreAllInTheFirstCell) {
   EXPECT_TRUE(morton_order(std::vector<Vec3>{}).empty());
   EXPECT_EQ(morton_codes(std::vector<Vec3>(3, Vec3(1e300, -5, 0))),
             std::vector<std::uint64_t>(3, 0));
+}
+
+// Codes that share their leading bits, codes far from 0, codes all over, and the same ones again.
+TEST(Morton, OrderOfAnyCodesIsThatOfAStableSort) {
+  std::mt19937_64 random(1);
+  for (const int bits : {0, 1, 5, 12, 13, 40, 63}) {
+    std::vector<std::uint64_t> codes(20'000);
+    for (std::uint64_t& code : codes) code = (random() >> 1) & ((std::uint64_t{1} << bits) - 1);
+    const std::uint64_t most = *std::max_element(codes.begin(), codes.end());
+    for (std::uint64_t& code : codes) code += (std::uint64_t{1} << 63) - 1 - most;
+    std::vector<Index> expected(codes.size());
+    std::iota(expected.begin(), expected.end(), 0);
+    std::stable_sort(expected.begin(), expected.end(),
+                     [&](Index a, Index b) { return codes[a] < codes[b]; });
+    EXPECT_EQ(morton_order(codes), expected) << bits << " bits";
+  }
+  EXPECT_TRUE(morton_order(std::vector<std::uint64_t>{}).empty());
 }
 
 }  // namespace
