@@ -86,8 +86,10 @@ void measure(const Mesh& mesh, const Surface& surface, std::span<const Vec3> mov
             seconds([&] { const SurfaceChecker again(mesh, surfaces); }), n);
   print_row("  of which collect_faces", seconds([&] { detail::collect_faces(mesh, 2); }), n);
   print_row("SurfaceChecker::check", seconds([&] { checker.check(moved); }), n);
-  print_row("  of which find_intersections",
-            seconds([&] { detail::find_intersections(motion.in_place(), motion.has_moved); }), n);
+  print_row("  of which find_intersections", seconds([&] {
+              detail::find_intersections(rest.in_place(), motion.in_place(), motion.has_moved);
+            }),
+            n);
   print_row("check_surface, all of it", seconds([&] { check_surface(mesh, surfaces, moved); }), n);
   const SurfaceCheck check = checker.check(moved);
   fmt::print("  found: {} intersections, {} folded faces\n", check.self_intersections,

@@ -135,14 +135,15 @@ SurfaceChecker& SurfaceChecker::operator=(SurfaceChecker&&) noexcept = default;
 SurfaceCheck SurfaceChecker::check(std::span<const Vec3> moved) const {
   require_positions(*plan_, moved);
   const SurfaceMotion motion = detail::move_faces(plan_->rest, moved);
-  const detail::FoundPairs found = detail::find_intersections(motion.in_place(), motion.has_moved);
+  const detail::FoundPairs found =
+      detail::find_intersections(plan_->rest.in_place(), motion.in_place(), motion.has_moved);
   detail::DefectTally tally = detail::new_intersections(motion, found.pairs);
   tally.add(detail::turned_faces(motion));
   tally.add(detail::closed_walls(motion, *plan_->tree));
 
   SurfaceCheck check;
   check.self_intersections = tally.count(SurfaceDefect::intersection);
-  check.input_intersections = tally.n_in_input();
+  check.input_intersections = static_cast<std::int64_t>(found.in_input.size());
   check.folded_faces = tally.count(SurfaceDefect::folded);
   check.collapsed_faces = tally.count(SurfaceDefect::collapsed);
   check.closed_walls = tally.count(SurfaceDefect::closed_wall);

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "coincident.hpp"
+#include "disjoint_sets.hpp"
 #include "element_nodes.hpp"
 #include "morton.hpp"
 #include "parallel.hpp"
@@ -46,27 +47,43 @@ std::vector<Face> faces_of(const Mesh& mesh, int face_dimension) {
   return faces;
 }
 
-// Elements of several groups, which a file repeats, and sides that are elements as well: of faces
-// on the same nodes only the first stays.
-void drop_repetitions(std::vector<Face>& faces) {
+// For each face the first one with its key.
+template <class KeyOf>
+std::vector<Index> first_with_key(std::size_t n_faces, KeyOf&& key_of) {
   struct Entry {
     FaceKey key;
-    std::size_t face;
+    Index face;
   };
   std::vector<Entry> entries;
-  entries.reserve(faces.size());
-  for (std::size_t f = 0; f < faces.size(); ++f)
-    entries.push_back({face_key(faces[f].corners()), f});
+  entries.reserve(n_faces);
+  for (std::size_t f = 0; f < n_faces; ++f) entries.push_back({key_of(f), static_cast<Index>(f)});
   parallel_sort(std::span(entries), [](const Entry& a, const Entry& b) {
     return a.key != b.key ? a.key < b.key : a.face < b.face;
   });
-  std::vector<std::uint8_t> is_repeated(faces.size(), 0);
-  for (std::size_t i = 1; i < entries.size(); ++i)
-    is_repeated[entries[i].face] = entries[i].key == entries[i - 1].key;
+  std::vector<Index> first(n_faces);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const bool is_first = i == 0 || entries[i].key != entries[i - 1].key;
+    first[entries[i].face] = is_first ? entries[i].face : first[entries[i - 1].face];
+  }
+  return first;
+}
+
+// Elements of several groups, which a file repeats, and sides that are elements as well: of faces
+// on the same nodes only the first stays.
+void drop_repetitions(std::vector<Face>& faces) {
+  const std::vector<Index> first =
+      first_with_key(faces.size(), [&](std::size_t f) { return face_key(faces[f].corners()); });
   std::size_t n_kept = 0;
   for (std::size_t f = 0; f < faces.size(); ++f)
-    if (!is_repeated[f]) faces[n_kept++] = faces[f];
+    if (first[f] == static_cast<Index>(f)) faces[n_kept++] = faces[f];
   faces.resize(n_kept);
+}
+
+FaceKey key_of_places(const CheckedFaces& faces, std::size_t f) {
+  std::array<Index, 4> places{};
+  const auto points = faces.face(f);
+  for (std::size_t k = 0; k < points.size(); ++k) places[k] = faces.joined[points[k]];
+  return face_key(std::span(places).first(points.size()));
 }
 
 std::vector<Index> along_curve(const std::vector<Face>& faces, const Mesh& mesh) {
@@ -137,7 +154,20 @@ CheckedFaces collect_faces(const Mesh& mesh, int dimension) {
   for (const Index f : along_curve(faces, mesh)) add_face(faces[f], point_of_node, result);
   for (const Index node : result.nodes) result.before.push_back(mesh.nodes[node]);
   result.joined = join(result.before);
+  result.same_place = first_with_key(result.corners.size(),
+                                     [&](std::size_t f) { return key_of_places(result, f); });
   add_facets(result);
+  return result;
+}
+
+std::vector<Index> CheckedFaces::sample(std::size_t step) const {
+  DisjointSets parts(nodes.size());
+  for (std::size_t f = 0; f < corners.size(); ++f)
+    for (const Index point : face(f)) parts.unite(face(f).front(), point);
+  std::vector<Index> result;
+  for (Index point = 0; point < static_cast<Index>(nodes.size()); ++point)
+    if (static_cast<std::size_t>(point) % step == 0 || parts.smallest(point) == point)
+      result.push_back(point);
   return result;
 }
 

@@ -35,6 +35,9 @@ struct CheckedFaces {
 
   std::vector<std::array<Index, 4>> corners;  ///< points of each face; -1 behind the last
   std::vector<FaceSource> sources;            ///< of each face
+  /// Of each face, the first whose corners are at the same places in the input: the two sides of a
+  /// contact are one there, whatever becomes of them.
+  std::vector<Index> same_place;
 
   /// Triangles or segments that stand for the faces: of a quadrangle those of both its splittings,
   /// so that it does not matter which one a solver takes, nor where the file starts. None where
@@ -42,6 +45,9 @@ struct CheckedFaces {
   std::vector<Facet> facets;
   std::vector<Index> face_of_facet;  ///< ascending; facets of one face stand together
   std::vector<Index> first_facet;    ///< n_faces + 1 positions in facets
+
+  /// Some points of every connected part, and one in `step` of all, ascending.
+  std::vector<Index> sample(std::size_t step) const;
 
   std::span<const Index> face(std::size_t i) const {
     const std::size_t n = corners[i][2] < 0 ? 2 : corners[i][3] < 0 ? 3 : 4;

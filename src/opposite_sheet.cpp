@@ -9,6 +9,7 @@ namespace {
 
 constexpr double least_cosine = 0.5;  // of the angle between ray and normal
 constexpr double slack = 1e-9;        // so that no ray slips through between two facets
+constexpr int most_facets = 10'000;   // of one ray; where more lie upon each other, these will do
 
 struct Ray {
   Vec3 from, direction;
@@ -46,7 +47,9 @@ std::optional<SheetHit> opposite_sheet(const CheckedFaces& faces, const Triangle
                                        const Vec3& plane_normal) {
   const Ray ray{faces.before[point], direction};
   std::optional<SheetHit> nearest;
+  int n_facets = 0;
   tree.for_each_along(ray.from, direction, reach, [&](std::size_t f, double within) {
+    if (++n_facets > most_facets) return -1.0;
     const auto [a, b, c] = faces.facets[f];
     const Index self = faces.joined[point];
     if (faces.joined[a] == self || faces.joined[b] == self || faces.joined[c] == self)

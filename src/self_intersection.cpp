@@ -37,28 +37,32 @@ bool faces_intersect(const FacesInPlace& now, Index face_a, Index face_b, Place&
   return false;
 }
 
-struct Part {
-  std::vector<FacePair> pairs;
-  bool is_complete = true;
-};
+void sort_once(std::vector<FacePair>& pairs) {
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+}
 
-Part search(const FacesInPlace& now, const TriangleTree& tree, const TriangleTree::Task& task,
-            std::size_t most_tests) {
-  Part part;
+FoundPairs search(const FacesInPlace& before, const FacesInPlace& now, const TriangleTree& tree,
+                  const TriangleTree::Task& task, std::size_t most_tests) {
+  FoundPairs part;
   std::size_t n_tests = 0;
+  const std::vector<Index>& same_place = now.faces.same_place;
   const auto place = [&](Index point) -> const Vec3& { return now.positions[point]; };
   tree.for_each_pair(task, [&](std::size_t i, std::size_t j) {
     const FacePair pair{now.faces.face_of_facet[i], now.faces.face_of_facet[j]};
-    part.is_complete = ++n_tests < most_tests && part.pairs.size() < most_pairs_of_task;
-    if (pair.a != pair.b && facets_intersect(now, i, j, place)) part.pairs.push_back(pair);
+    part.is_complete = ++n_tests < most_tests &&
+                       std::max(part.pairs.size(), part.in_input.size()) < most_pairs_of_task;
+    if (same_place[pair.a] != same_place[pair.b] && facets_intersect(now, i, j, place))
+      (before.intersect(pair.a, pair.b) ? part.in_input : part.pairs).push_back(pair);
     return part.is_complete;
   });
   return part;
 }
 
-void sort_once(std::vector<FacePair>& pairs) {
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+void append(FoundPairs& all, const FoundPairs& part) {
+  all.pairs.insert(all.pairs.end(), part.pairs.begin(), part.pairs.end());
+  all.in_input.insert(all.in_input.end(), part.in_input.begin(), part.in_input.end());
+  all.is_complete = all.is_complete && part.is_complete;
 }
 
 }  // namespace
@@ -76,29 +80,28 @@ bool intersect_between(const FacesInPlace& before, const FacesInPlace& after, do
   });
 }
 
-FoundPairs find_intersections(const FacesInPlace& now, std::span<const std::uint8_t> has_moved) {
+FoundPairs find_intersections(const FacesInPlace& before, const FacesInPlace& now,
+                              std::span<const std::uint8_t> has_moved) {
   const TriangleTree tree(now.faces.facets, now.positions, has_moved);
   const std::vector<TriangleTree::Task> tasks = tree.tasks();
   const std::size_t most_tests =
       most_tests_of_task +
       most_tests_of_facet * (now.faces.facets.size() / std::max<std::size_t>(tasks.size(), 1));
   FoundPairs found;
-  std::vector<Part> parts(tasks.size());
+  std::vector<FoundPairs> parts(tasks.size());
   for (std::size_t first = 0; first < tasks.size(); first += tasks_per_batch) {
     const std::size_t n = std::min(tasks_per_batch, tasks.size() - first);
     parallel_for(n, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = first + begin; t < first + end; ++t)
-        parts[t] = search(now, tree, tasks[t], most_tests);
+        parts[t] = search(before, now, tree, tasks[t], most_tests);
     });
-    for (std::size_t t = first; t < first + n; ++t) {
-      found.pairs.insert(found.pairs.end(), parts[t].pairs.begin(), parts[t].pairs.end());
-      found.is_complete = found.is_complete && parts[t].is_complete;
-    }
-    if (found.pairs.size() <= most_pairs) continue;
+    for (std::size_t t = first; t < first + n; ++t) append(found, parts[t]);
+    if (std::max(found.pairs.size(), found.in_input.size()) <= most_pairs) continue;
     found.is_complete = found.is_complete && first + n == tasks.size();
     break;
   }
   sort_once(found.pairs);
+  sort_once(found.in_input);
   return found;
 }
 

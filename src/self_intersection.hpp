@@ -36,12 +36,15 @@ struct FacePair {
 };
 
 struct FoundPairs {
-  std::vector<FacePair> pairs;  ///< ascending, each once
-  bool is_complete = true;      ///< false: there are more
+  std::vector<FacePair> pairs;     ///< that did not intersect before; ascending, each once
+  std::vector<FacePair> in_input;  ///< that did; likewise
+  bool is_complete = true;         ///< false: there are more
 };
 
-/// Pairs of faces that intersect, one of them with a point that moved. Stops after some 10^5 pairs,
-/// or where very many boxes overlap without an intersection. Depends on no number of threads.
-FoundPairs find_intersections(const FacesInPlace& now, std::span<const std::uint8_t> has_moved);
+/// Pairs of faces that intersect, one of them with a point that moved; none of faces at one place
+/// before. Stops after some 10^5 pairs of either kind, or where very many boxes overlap without an
+/// intersection. Depends on no number of threads.
+FoundPairs find_intersections(const FacesInPlace& before, const FacesInPlace& now,
+                              std::span<const std::uint8_t> has_moved);
 
 }  // namespace roughmesh::detail

@@ -155,7 +155,6 @@ void DefectTally::add(const DefectTally& other) {
   for (const Defect& defect : other.worst_) add(defect);
   for (std::size_t k = 0; k < counts_.size(); ++k) counts_[k] += other.counts_[k];
   for (const Defect& defect : other.worst_) --counts_[static_cast<std::size_t>(defect.kind)];
-  n_in_input_ += other.n_in_input_;
 }
 
 double DefectTally::threshold() const {
@@ -177,9 +176,7 @@ DefectTally new_intersections(const SurfaceMotion& motion, std::span<const FaceP
     const auto fails = [&, a = a, b = b](double share) {
       return intersect_between(before, after, share, a, b);
     };
-    if (before.intersect(a, b))
-      part.add_intersection_of_input();
-    else if (part.threshold() < 1 && !fails(part.threshold()))
+    if (part.threshold() < 1 && !fails(part.threshold()))
       part.add_minor(SurfaceDefect::intersection);
     else
       part.add(make_defect(motion.rest.faces, SurfaceDefect::intersection,
@@ -196,11 +193,10 @@ DefectTally closed_walls(const SurfaceMotion& motion, const TriangleTree& tree) 
     longest = std::max(longest, motion.displacement(static_cast<Index>(i)).norm());
   const auto every = [&](std::size_t step) {
     constexpr std::size_t grain = 1024;
-    return tally((motion.after.size() + step - 1) / step, grain,
-                 [&](std::size_t i, DefectTally& part) {
-                   add_if_passed(motion, tree, static_cast<Index>(step * i), face_of[step * i],
-                                 longest, part);
-                 });
+    const std::vector<Index> points = motion.rest.faces.sample(step);
+    return tally(points.size(), grain, [&](std::size_t i, DefectTally& part) {
+      add_if_passed(motion, tree, points[i], face_of[points[i]], longest, part);
+    });
   };
   const std::size_t step = 1 + motion.after.size() / most_sampled_points;
   DefectTally sample = every(step);

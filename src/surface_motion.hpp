@@ -52,7 +52,6 @@ class DefectTally {
   static constexpr std::size_t most_kept = 10;
 
   void add(const Defect& defect);
-  void add_intersection_of_input() { ++n_in_input_; }
   void add(const DefectTally& other);
 
   /// A defect that passes at this share is none of the worst.
@@ -60,12 +59,10 @@ class DefectTally {
   std::int64_t count(SurfaceDefect kind) const { return counts_[static_cast<std::size_t>(kind)]; }
   /// Counts one that is none of the worst.
   void add_minor(SurfaceDefect kind) { ++counts_[static_cast<std::size_t>(kind)]; }
-  std::int64_t n_in_input() const { return n_in_input_; }
   const std::vector<Defect>& worst() const { return worst_; }  ///< worst first
 
  private:
   std::array<std::int64_t, 4> counts_{};
-  std::int64_t n_in_input_ = 0;
   std::vector<Defect> worst_;
 };
 
@@ -73,10 +70,11 @@ class DefectTally {
 /// have nothing to lose.
 DefectTally turned_faces(const SurfaceMotion& motion);
 
-/// Of pairs of faces that intersect: those that did so in the input are counted apart.
+/// Pairs of faces that intersect and did not in the input.
 DefectTally new_intersections(const SurfaceMotion& motion, std::span<const FacePair> pairs);
 
-/// Of larger surfaces, one in so many points sends rays to the opposite sheet that this many do.
+/// Of larger surfaces, one in so many points sends rays to the opposite sheet that this many do,
+/// and one of every connected part.
 inline constexpr std::size_t most_sampled_points = 100'000;
 
 /// Points that passed the sheet that was opposite to them in the input.

@@ -208,20 +208,12 @@ void warn_of_thin_wall(Report& report, const Surface& surface, const Roughness& 
 }
 
 void warn_of_input_intersections(Report& report, const SurfaceCheck& check) {
-  std::vector<std::string> warnings;
-  if (check.input_intersections > 0)
-    warnings.push_back(
-        fmt::format("{} pairs of faces intersect in the input already, and are not counted as self-"
-                    "intersections; mend the mesh if your solver needs a surface that does not "
-                    "intersect itself",
-                    check.input_intersections));
-  if (!check.is_complete)
-    warnings.emplace_back(
-        "so many faces lie upon each other that the search for self-intersections ended early: "
-        "there may be more; mend the mesh or lower --rms");
-  for (std::string& warning : warnings)
-    if (std::find(report.warnings.begin(), report.warnings.end(), warning) == report.warnings.end())
-      report.warnings.push_back(std::move(warning));
+  if (check.input_intersections == 0) return;
+  report.warnings.push_back(
+      fmt::format("{} pairs of faces intersect or touch in the input already, and are not counted "
+                  "as self-intersections; mend the mesh if your solver needs a surface that does "
+                  "not intersect itself",
+                  check.input_intersections));
 }
 
 std::string describe_defects(const SurfaceCheck& check) {
@@ -233,6 +225,11 @@ std::string describe_defects(const SurfaceCheck& check) {
   add(check.folded_faces, "folded faces");
   add(check.collapsed_faces, "collapsed faces");
   add(check.closed_walls, "points beyond the other side of a thin wall or gap");
+  if (check.findings.empty())
+    return fmt::format(
+        "so many faces lie upon each other ({} pairs in the input already) that the "
+        "search for self-intersections ended early; mend the mesh",
+        check.input_intersections);
   const SurfaceFinding& worst = check.findings.front();
   return fmt::format("the rough surface has {}{}; the worst: {} at {}, where nodes moved by {:.3g}",
                      check.is_complete ? "" : "at least ", fmt::join(counts, ", "), worst.what,
@@ -240,7 +237,7 @@ std::string describe_defects(const SurfaceCheck& check) {
 }
 
 std::string lower_rms(const SurfaceCheck& check, const RoughenOptions& request) {
-  if (check.valid()) return "lower --rms";
+  if (check.findings.empty()) return "lower --rms";
   const double share = check.findings.front().passing_share;
   if (request.surfaces.size() > 1)
     return fmt::format("lower every --rms to about {:.2g} % (estimated)",

@@ -48,7 +48,7 @@ void warn_of_walls(Report& report, Index n_nodes);
 void warn_of_thin_wall(Report& report, const Surface& surface, const Roughness& request,
                        const ThinWall& wall);
 
-/// Surfaces that intersect themselves without any roughness, and checks that ended early. Once.
+/// Surfaces that intersect themselves without any roughness.
 void warn_of_input_intersections(Report& report, const SurfaceCheck& check);
 
 /// What is wrong with a rough surface, how often, and the worst place: part of a line.

@@ -111,7 +111,8 @@ struct SurfaceCheck {
   bool is_complete = true;
   std::vector<SurfaceFinding> findings;  ///< smallest passing_share first, at most 10
 
-  bool valid() const { return findings.empty(); }
+  /// Nothing was found, and nothing can have been missed.
+  bool valid() const { return findings.empty() && is_complete; }
 };
 
 /// Where a surface is closer to its other side than heights may be.
