@@ -9,6 +9,8 @@
 
 #include "roughmesh/error.hpp"
 
+#include "free_memory.hpp"
+
 namespace roughmesh::detail {
 namespace {
 
@@ -18,6 +20,8 @@ using Triangle = std::array<Index, 3>;
 
 // Two areas over the square of the longest edge below which a triangle counts as flat.
 constexpr double flat = 1e-10;
+
+constexpr double largest_residual = 1e-6;  // relative; round-off leaves some 1e-10 of good meshes
 
 // The cotangents of the angles are the stiffness of the edges opposite to them, and each corner has
 // a third of the area. Lengths in units of `scale` suit any unit of the mesh.
@@ -60,12 +64,51 @@ Matrix columns_of(const Matrix& laplacian, std::span<const Index> nodes) {
   return columns;
 }
 
+void require_room(double n_entries, std::size_t n_sought) {
+  constexpr double bytes_per_entry = sizeof(double) + sizeof(int);
+  require_memory(bytes_per_entry * n_entries,
+                 fmt::format("smooth displacement of {} nodes beside sharp edges", n_sought),
+                 "choose --edges average");
+}
+
+// Of the product of a matrix with its transpose: a node of very many triangles would fill it.
+double most_entries_of_square(const Matrix& columns) {
+  std::vector<double> n_of_row(static_cast<std::size_t>(columns.rows()), 0.0);
+  for (Eigen::Index k = 0; k < columns.nonZeros(); ++k) ++n_of_row[columns.innerIndexPtr()[k]];
+  double sum = 0;
+  for (const double n : n_of_row) sum += n * n;
+  return sum;
+}
+
+class Factor : public Eigen::SimplicialLDLT<Matrix> {
+ public:
+  /// That it will have; after analyzePattern().
+  double n_entries() const { return static_cast<double>(m_matrix.nonZeros()); }
+};
+
+[[noreturn]] void refuse(std::size_t n_sought) {
+  throw NumericalError(
+      fmt::format("the {} nodes of the faces beside sharp edges have no smooth displacement; "
+                  "improve the worst faces of the input mesh, or choose --edges average",
+                  n_sought));
+}
+
 }  // namespace
 
 struct SmoothExtension::Plan {
   std::vector<Index> given, sought;
   Matrix coupling;  // sought by given
-  Eigen::SimplicialLDLT<Matrix> factor;
+  Matrix stiffness;
+  Factor factor;
+
+  void factorize(const Matrix& columns) {
+    require_room(most_entries_of_square(columns), sought.size());
+    stiffness = columns.transpose() * columns;
+    factor.analyzePattern(stiffness);
+    require_room(factor.n_entries(), sought.size());
+    factor.factorize(stiffness);
+    if (factor.info() != Eigen::Success) refuse(sought.size());
+  }
 };
 
 SmoothExtension::SmoothExtension(std::span<const Vec3> nodes, std::span<const Triangle> triangles,
@@ -88,12 +131,7 @@ SmoothExtension::SmoothExtension(std::span<const Vec3> nodes, std::span<const Tr
       at.valueRef() /= std::sqrt(areas[at.row()]);
   const Matrix sought = columns_of(laplacian, plan->sought);
   plan->coupling = sought.transpose() * columns_of(laplacian, plan->given);
-  plan->factor.compute(Matrix(sought.transpose() * sought));
-  if (plan->factor.info() != Eigen::Success)
-    throw NumericalError(
-        fmt::format("the {} nodes of the faces beside sharp edges have no smooth displacement; "
-                    "improve the worst faces of the input mesh, or choose --edges average",
-                    plan->sought.size()));
+  plan->factorize(sought);
   plan_ = std::move(plan);
 }
 
@@ -110,6 +148,8 @@ std::vector<Vec3> SmoothExtension::extend(std::span<const Vec3> values) const {
     given.row(static_cast<Eigen::Index>(i)) = values[i].transpose();
   const Eigen::MatrixX3d load = -(plan_->coupling * given);
   const Eigen::MatrixX3d solution = plan_->factor.solve(load);
+  if (!((plan_->stiffness * solution - load).norm() <= largest_residual * load.norm()))
+    refuse(result.size());
   for (std::size_t i = 0; i < result.size(); ++i)
     result[i] = solution.row(static_cast<Eigen::Index>(i)).transpose();
   return result;
