@@ -187,11 +187,11 @@ struct Parser {
         app.add_subcommand("info", "list groups and sizes, and what roughness the mesh can carry");
     add_options(
         *info, command.options,
-        {"input",   "group",        "rms",     "length",    "acf",       "length_definition",
-         "nu",      "hurst",        "rolloff", "power",     "alpha",     "table",
-         "angle",   "cutoff",       "method",  "tolerance", "distance",  "period",
-         "edges",   "edge_angle",   "flip",    "unit",      "mesh_size", "gmsh",
-         "timeout", "trust_scripts"});
+        {"input", "group",      "rms",          "length",    "acf",       "length_definition",
+         "nu",    "hurst",      "rolloff",      "power",     "alpha",     "table",
+         "angle", "cutoff",     "method",       "tolerance", "distance",  "period",
+         "edges", "edge_angle", "flip",         "unit",      "mesh_size", "round",
+         "gmsh",  "timeout",    "trust_scripts"});
     info->footer(exit_codes);
   }
 

@@ -253,6 +253,11 @@ std::string list_of(const std::vector<std::string>& names) {
 
 Mesh read_input(const RoughenOptions& options) {
   if (!is_geometry(options.input)) {
+    if (options.round)
+      throw InputError(
+          fmt::format("--round: {:g}; {} is a mesh, and only CAD files are rounded; "
+                      "leave it out",
+                      *options.round, options.input));
     if (options.mesh_size)
       throw InputError(
           fmt::format("--mesh-size: {:g}; {} is a mesh, whose nodes move and whose size "

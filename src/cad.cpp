@@ -3,6 +3,7 @@
 // do by a script that holds nothing of the input but numbers.
 #include "roughmesh/cad.hpp"
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -11,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "cad_rounding.hpp"
 #include "cad_scripts.hpp"
 #include "file_formats.hpp"
 #include "geo_script.hpp"
@@ -78,6 +80,12 @@ Mesh read_result(const ScratchFolder& folder, const std::filesystem::path& path)
 
 // ---- CAD files
 
+struct CadFile {
+  const FileBytes& file;
+  std::string name;  ///< in the scratch folder
+  std::optional<double> unit_in_mm;
+};
+
 // What the generated script printed; empty if it did not come so far.
 struct Contents {
   double n_solids = 0, n_surfaces = 0, n_nodes = 0;
@@ -100,6 +108,9 @@ std::optional<Contents> contents_in(std::string_view output) {
 }
 
 void check_cad_options(const std::filesystem::path& path, const GeometryOptions& options) {
+  if (!(options.round >= 0 && std::isfinite(options.round)))
+    throw InputError(
+        fmt::format("{}: a radius of {:g}; --round must be above 0", path.string(), options.round));
   if (options.mesh_size > 0 && std::isfinite(options.mesh_size)) return;
   throw InputError(
       fmt::format("{}: a CAD file needs the length of its mesh's edges, above 0; give "
@@ -145,16 +156,81 @@ void check_cad_outcome(const GmshOutcome& outcome, const std::filesystem::path& 
                     path.string(), error));
 }
 
+// ---- Rounding
+
+/// The volumes that the script printed behind the mark, before and after; none if the fillets
+/// failed.
+std::optional<std::array<double, 2>> volumes_in(std::string_view output) {
+  std::size_t begin = output.find(detail::rounded_mark);
+  if (begin == std::string_view::npos) return {};
+  output.remove_prefix(begin + detail::rounded_mark.size());
+  std::array<double, 2> volumes{};
+  for (double& volume : volumes) {
+    while (!output.empty() && output.front() == ' ') output.remove_prefix(1);
+    const auto [end, error] = std::from_chars(output.data(), output.data() + output.size(), volume);
+    if (error != std::errc()) return {};
+    output.remove_prefix(static_cast<std::size_t>(end - output.data()));
+  }
+  return volumes;
+}
+
+void check_rounding(const detail::Rounding& rounding, const GmshOutcome& outcome,
+                    const std::filesystem::path& path) {
+  const auto volumes = volumes_in(outcome.output);
+  if (!volumes)
+    throw InputError(
+        fmt::format("{}: gmsh could not round its {} sharp edges with a radius of {:g}; use a "
+                    "smaller --round",
+                    path.string(), rounding.curves.size(), rounding.radius));
+  if (detail::is_plausible(rounding, volumes->front(), volumes->back())) return;
+  throw InputError(fmt::format(
+      "{}: rounding with a radius of {:g} gave a wrong solid: its volume changed by {:.3g} where "
+      "{:.3g} is to be expected; use a smaller --round",
+      path.string(), rounding.radius, volumes->back() - volumes->front(), rounding.volume_change));
+}
+
+detail::Rounding survey(const CadFile& cad, const GeometryOptions& options) {
+  const ScratchFolder folder;
+  write(folder / cad.name, cad.file.view());
+  write(folder / "driver.geo", detail::survey_script(cad.name, cad.unit_in_mm, options));
+  const GmshOutcome outcome = run(folder, {"driver.geo"}, options);
+  check_cad_outcome(outcome, cad.file.path, options);
+  detail::Rounding rounding =
+      detail::plan_rounding(read_result(folder, cad.file.path), options.round, options.sharp_angle);
+  if (rounding.curves.empty())
+    throw InputError(
+        fmt::format("{}: has no sharp edge to round; leave --round out", cad.file.path.string()));
+  return rounding;
+}
+
+/// Fillets crash some versions.
+GmshOutcome run_rounding(const ScratchFolder& folder, const detail::Rounding& rounding,
+                         const GeometryOptions& options) {
+  try {
+    return run(folder, {"driver.geo"}, options);
+  } catch (const NumericalError&) {
+    throw NumericalError(
+        fmt::format("gmsh: crashed while it rounded {} sharp edges with a radius of {:g}; use a "
+                    "smaller --round, or leave it out",
+                    rounding.curves.size(), rounding.radius));
+  }
+}
+
 Mesh mesh_cad(const FileBytes& file, Geometry kind, const GeometryOptions& options) {
   check_cad_options(file.path, options);
   check_header(file, kind);
   const bool is_step = kind == Geometry::step;
-  const std::string name = is_step ? "input.step" : "input.brep";
+  const CadFile cad{file, is_step ? "input.step" : "input.brep",
+                    is_step ? detail::step_length_unit(file.view()) : std::nullopt};
+  std::optional<detail::Rounding> rounding;
+  if (options.round > 0) rounding = survey(cad, options);
   const ScratchFolder folder;
-  write(folder / name, file.view());
-  const auto unit = is_step ? detail::step_length_unit(file.view()) : std::optional<double>();
-  write(folder / "driver.geo", detail::cad_script(name, unit, options));
-  const GmshOutcome outcome = run(folder, {"driver.geo"}, options);
+  write(folder / cad.name, file.view());
+  write(folder / "driver.geo",
+        detail::cad_script(cad.name, cad.unit_in_mm, options, rounding ? &*rounding : nullptr));
+  const GmshOutcome outcome =
+      rounding ? run_rounding(folder, *rounding, options) : run(folder, {"driver.geo"}, options);
+  if (rounding) check_rounding(*rounding, outcome, file.path);
   check_cad_outcome(outcome, file.path, options);
   return read_result(folder, file.path);
 }
@@ -219,6 +295,11 @@ Mesh mesh_script_file(const FileBytes& file, const GeometryOptions& options) {
 }
 
 void check_script_options(const std::filesystem::path& path, const GeometryOptions& options) {
+  if (options.round != 0)
+    throw InputError(
+        fmt::format("{}: is a script, and --round {:g} is for CAD files; use Fillet in "
+                    "the script",
+                    path.string(), options.round));
   if (options.mesh_size >= 0 && std::isfinite(options.mesh_size)) return;
   throw InputError(
       fmt::format("{}: mesh size {:g}: must be above 0, or left out for the script's own",

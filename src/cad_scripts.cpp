@@ -59,9 +59,10 @@ If (#solids() > 1)
 EndIf
 )";
 
-// Labels become physical groups: gmsh gives them as "Shapes/" and the path of names.
+// Labels become physical groups: gmsh gives them as "Shapes/" and the path of names. The lowest
+// dimension of those that count comes before.
 constexpr std::string_view group_script = R"(
-For dimension In {2:3}
+For dimension In {lowest:3}
   tags() = {};
   If (dimension == 3)
     tags() = Volume {:};
@@ -104,6 +105,27 @@ For dimension In {2:3}
 EndFor
 )";
 
+std::string rounding_script(const Rounding& rounding) {
+  return fmt::format(R"(
+solids() = Volume {{:}};
+before = 0;
+For i In {{0:#solids()-1}}
+  before += Mass Volume {{solids(i)}};
+EndFor
+rounded() = Fillet{{solids()}}{{{:d}}}{{{:.17g}}};
+after = 0;
+For i In {{0:#rounded()-1}}
+  after += Mass Volume {{rounded(i)}};
+EndFor
+If (#rounded() != #solids())
+  Printf("{} failed");
+  Exit;
+EndIf
+Printf("{} %.17g %.17g", before, after);
+)",
+                     fmt::join(rounding.curves, ", "), rounding.radius, rounded_mark, rounded_mark);
+}
+
 // Counts solids and surfaces, predicts the number of nodes, and meshes where that is bearable.
 // Elements of edge h fill space at about sqrt(2)/h^3 nodes, a surface at 2/sqrt(3)/h^2.
 constexpr std::string_view mesh_script = R"(
@@ -120,7 +142,7 @@ EndFor
 predicted = 1.41 * volume / size^3 + 1.15 * area / size^2;
 Printf("roughmesh: %g %g %.6g", #solids(), #surfaces(), predicted);
 If (#surfaces() > 0 && predicted <= most)
-  If (#solids() > 0)
+  If (#solids() > 0 && highest == 3)
     Mesh 3;
   Else
     Mesh 2;
@@ -147,17 +169,38 @@ EndIf
 
 }  // namespace
 
-std::string cad_script(std::string_view file, std::optional<double> unit_in_mm,
-                       const GeometryOptions& options) {
-  std::string script = "SetFactory(\"OpenCASCADE\");\n" + unit_script(unit_in_mm);
-  script += fmt::format("Geometry.OCCImportLabels = 1;\nMerge \"{}\";\n", file);
-  if (options.share_faces) script += share_faces_script;
-  script += group_script;
-  script += fmt::format("size = {:.17g};\nmost = {:.17g};\n", options.mesh_size, options.max_nodes);
+namespace {
+
+std::string import_script(std::string_view file, std::optional<double> unit_in_mm) {
+  return "SetFactory(\"OpenCASCADE\");\n" + unit_script(unit_in_mm) +
+         fmt::format("Geometry.OCCImportLabels = 1;\nMerge \"{}\";\n", file);
+}
+
+std::string sized_mesh_script(const GeometryOptions& options, int highest_dimension) {
+  std::string script = fmt::format("size = {:.17g};\nmost = {:.17g};\nhighest = {};\n",
+                                   options.mesh_size, options.max_nodes, highest_dimension);
   script += size_script(options.mesh_size) + "Mesh.SaveAll = 1;\nMesh.Algorithm3D = 10;\n";
   script += mesh_script;
   script += write_mesh_script;
   return script + "EndIf\n";
+}
+
+}  // namespace
+
+std::string survey_script(std::string_view file, std::optional<double> unit_in_mm,
+                          const GeometryOptions& options) {
+  return import_script(file, unit_in_mm) + sized_mesh_script(options, 2);
+}
+
+std::string cad_script(std::string_view file, std::optional<double> unit_in_mm,
+                       const GeometryOptions& options, const Rounding* rounding) {
+  std::string script = import_script(file, unit_in_mm);
+  if (options.share_faces && rounding == nullptr) script += share_faces_script;
+  // Solids keep their numbers when they are rounded, faces do not.
+  script += fmt::format("lowest = {};", rounding == nullptr ? 2 : 3);
+  script += group_script;
+  if (rounding != nullptr) script += rounding_script(*rounding);
+  return script + sized_mesh_script(options, 3);
 }
 
 std::string script_driver(bool keeps_mesh, const GeometryOptions& options) {

@@ -228,6 +228,7 @@ void check_files(const RoughenOptions& o) {
   if (o.ascii && o.binary)
     throw InputError("--ascii: not together with --binary; give one of them");
   if (o.mesh_size) require_length("--mesh-size", *o.mesh_size);
+  if (o.round) require_length("--round", *o.round);
   require(std::isfinite(o.timeout) && o.timeout > 0, "--timeout", o.timeout,
           "a positive number of seconds");
 }

@@ -148,6 +148,8 @@ GeometryOptions geometry_options(const RoughenOptions& o) {
   options.gmsh = o.gmsh;
   options.timeout = o.timeout;
   options.trust_scripts = o.trust_scripts;
+  if (o.round) options.round = *o.round;
+  options.sharp_angle = o.surfaces.front().edge_angle / 180 * std::numbers::pi;
   if (o.mesh_size) options.mesh_size = *o.mesh_size;
   // A script knows its own sizes.
   if (o.mesh_size || detail::lower_extension(o.input) == ".geo") return options;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <numbers>
 #include <string>
 
 #include "roughmesh/error.hpp"
@@ -23,6 +24,10 @@ struct GeometryOptions {
   double timeout = 600;        ///< seconds it may take, > 0
   bool trust_scripts = false;  ///< run .geo scripts that run programs or touch other files
   bool share_faces = true;  ///< of a CAD file: solids that touch get one mesh of their common face
+  /// Of a CAD file: radius to which the sharp edges of its solids are rounded, in the unit of the
+  /// file, best at least two mesh sizes; 0: they stay. Labels of faces are lost.
+  double round = 0;
+  double sharp_angle = 40.0 / 180.0 * std::numbers::pi;  ///< of the edges that are rounded
   double max_nodes =
       20'000'000;  ///< of a CAD file: predicted from its volume and area before meshing
 };
@@ -42,8 +47,12 @@ struct GeometryOptions {
 /// gmsh runs as a child process in a temporary folder, reads no option file of the user and prints
 /// nothing; an interrupt ends it (discard_unfinished_files).
 ///
+/// Rounding uses the fillets of OpenCASCADE; the volume of the solids has to change as their edges
+/// let expect (docs/math.md, eq. 66).
+///
 /// @throws InputError      missing file or program; no solid and no surface; mesh size missing or
-///                         too small; a script that is refused; time over
+///                         too small; a script that is refused; time over; a radius too large for
+///                         the solids, without sharp edges, or of a script
 /// @throws FormatError     not what its extension says, corrupt, a script with mistakes: file and,
 ///                         for scripts, line
 /// @throws NumericalError  gmsh failed to mesh it or crashed

@@ -75,6 +75,7 @@ struct RoughenOptions {
   std::optional<MeshFormat> format = {};
   bool ascii = false, binary = false;
   std::optional<double> mesh_size = {};
+  std::optional<double> round = {};
   std::string gmsh = "gmsh";
   double timeout = 600;
   bool trust_scripts = false;
@@ -170,6 +171,10 @@ void for_each_file_option(Options& o, Visit&& visit) {
                    "mesh size for CAD input; default: correlation length / 2.5. Scripts keep their "
                    "own without it"},
         o.mesh_size);
+  visit(OptionText{"round", "RADIUS",
+                   "round the sharp edges of solids of a CAD file first (--edge-angle); best at "
+                   "least two mesh sizes"},
+        o.round);
   visit(OptionText{"gmsh", "PATH", "the gmsh program, which meshes CAD files and scripts"}, o.gmsh);
   visit(OptionText{"timeout", "S", "seconds that gmsh may take"}, o.timeout);
   visit(OptionText{"trust_scripts", "",

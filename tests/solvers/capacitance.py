@@ -2,7 +2,7 @@
 """A solver reads rough meshes with their groups, and gets the capacitance that theory foresees.
 
 A conductor at potential 1, a sphere with rough surface, stands in an earthed box. By second-order perturbation
-(docs/math.md, eq. CAP) roughness changes its mean capacitance; the mean of all realizations must agree, within 4
+(docs/math.md, eq. 67) roughness changes its mean capacitance; the mean of all realizations must agree, within 4
 standard errors.
 
 usage: capacitance.py SOLVER ORDER SMOOTH.msh REPORT.json
