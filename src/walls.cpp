@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <tuple>
 
 #include "flat_walls.hpp"
 #include "node_images.hpp"
@@ -19,6 +20,8 @@ using Flags = std::vector<std::uint8_t>;
 // the wall goes on where the surface ends. Its inverse is the most that a node may slide by over
 // its height (docs/math.md, eq. 36).
 constexpr double least_sine = 1.0 / 3;
+// Sine of 40 degrees: planes at a smaller angle are facets of one curved wall.
+constexpr double smooth_sine = 0.64;
 // Of a unit normal outside of the space of others, below which it is one of them but for round-off.
 constexpr double new_direction = 1e-4;
 // Sine of an angle between a line and a plane that it lies in.
@@ -84,22 +87,67 @@ struct Patched {
   }
 };
 
+// A patch at a place where surfaces meet it.
+struct Contact {
+  Index patch = 0;
+  Index meeting = 0;
+
+  friend auto operator<=>(const Contact&, const Contact&) = default;
+};
+
+// By meeting; each once.
+std::vector<Contact> contacts(const Patched& walls, std::span<const Meeting> met) {
+  std::vector<Contact> result;
+  walls.for_each_node([&](Index node, Index patch) {
+    auto at = std::lower_bound(met.begin(), met.end(), node,
+                               [](const Meeting& meeting, Index n) { return meeting.node < n; });
+    for (; at != met.end() && at->node == node; ++at)
+      result.push_back({patch, static_cast<Index>(at - met.begin())});
+  });
+  std::sort(result.begin(), result.end(), [](const Contact& a, const Contact& b) {
+    return std::tie(a.meeting, a.patch) < std::tie(b.meeting, b.patch);
+  });
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return result;
+}
+
+// Facets of a curved wall are many planes, which together leave a node no way to move by its
+// height: such facets do not slide.
+void hold_curved(std::span<const Contact> at, const Vec3& normal, Patched& walls) {
+  const auto plane = [&](const Contact& contact) -> const Vec3& {
+    return walls.found.patches[contact.patch].normal;
+  };
+  Directions across;
+  for (const Contact& each : at)
+    if (walls.slides[each.patch] != 0) across.add(plane(each));
+  Vec3 left = normal;
+  for (std::size_t k = 0; k < across.n; ++k) left -= across.all[k].dot(normal) * across.all[k];
+  if (!(left.norm() < least_sine)) return;
+  for (const Contact& a : at)
+    for (const Contact& b : at) {
+      const double sine = plane(a).cross(plane(b)).norm();
+      if (new_direction < sine && sine < smooth_sine)
+        walls.slides[a.patch] = walls.slides[b.patch] = 0;
+    }
+}
+
 Patched find_sliding_patches(const Mesh& mesh, std::span<const Surface> surfaces,
                              std::span<const Meeting> met) {
   Patched walls{detail::wall_faces(mesh, surfaces), {}, {}};
   walls.found = detail::find_patches(mesh, walls.faces, surfaces.front().plane_normal);
-  Flags is_met(walls.found.patches.size(), 0), is_crossed(is_met.size(), 1);
-  walls.for_each_node([&](Index node, Index patch) {
-    auto at = std::lower_bound(met.begin(), met.end(), node,
-                               [](const Meeting& meeting, Index n) { return meeting.node < n; });
-    for (; at != met.end() && at->node == node; ++at) {
-      is_met[patch] = 1;
-      if (at->normal.cross(walls.found.patches[patch].normal).norm() < least_sine)
-        is_crossed[patch] = 0;
-    }
-  });
-  for (std::size_t p = 0; p < is_met.size(); ++p)
-    walls.slides.push_back(walls.found.patches[p].is_flat && is_met[p] != 0 && is_crossed[p] != 0);
+  walls.slides.assign(walls.found.patches.size(), 0);
+  const std::vector<Contact> all = contacts(walls, met);
+  for (const Contact& each : all)
+    walls.slides[each.patch] = walls.found.patches[each.patch].is_flat;
+  for (const Contact& each : all)
+    if (met[each.meeting].normal.cross(walls.found.patches[each.patch].normal).norm() < least_sine)
+      walls.slides[each.patch] = 0;
+  for (std::size_t first = 0; first < all.size();) {
+    std::size_t end = first;
+    while (end < all.size() && all[end].meeting == all[first].meeting) ++end;
+    hold_curved(std::span(all).subspan(first, end - first), met[all[first].meeting].normal, walls);
+    first = end;
+  }
   return walls;
 }
 
