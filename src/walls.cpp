@@ -113,13 +113,14 @@ std::vector<Contact> contacts(const Patched& walls, std::span<const Meeting> met
 
 // Facets of a curved wall are many planes, which together leave a node no way to move by its
 // height: such facets do not slide.
-void hold_curved(std::span<const Contact> at, const Vec3& normal, Patched& walls) {
+void hold_curved(std::span<const Contact> at, const Vec3& normal, const Flags& crossed,
+                 Patched& walls) {
   const auto plane = [&](const Contact& contact) -> const Vec3& {
     return walls.found.patches[contact.patch].normal;
   };
   Directions across;
   for (const Contact& each : at)
-    if (walls.slides[each.patch] != 0) across.add(plane(each));
+    if (crossed[each.patch] != 0) across.add(plane(each));
   Vec3 left = normal;
   for (std::size_t k = 0; k < across.n; ++k) left -= across.all[k].dot(normal) * across.all[k];
   if (!(left.norm() < least_sine)) return;
@@ -142,10 +143,12 @@ Patched find_sliding_patches(const Mesh& mesh, std::span<const Surface> surfaces
   for (const Contact& each : all)
     if (met[each.meeting].normal.cross(walls.found.patches[each.patch].normal).norm() < least_sine)
       walls.slides[each.patch] = 0;
+  const Flags crossed = walls.slides;
   for (std::size_t first = 0; first < all.size();) {
     std::size_t end = first;
     while (end < all.size() && all[end].meeting == all[first].meeting) ++end;
-    hold_curved(std::span(all).subspan(first, end - first), met[all[first].meeting].normal, walls);
+    hold_curved(std::span(all).subspan(first, end - first), met[all[first].meeting].normal, crossed,
+                walls);
     first = end;
   }
   return walls;
