@@ -44,8 +44,8 @@ std::vector<Tag> read_groups(MshReader& reader) {
 }
 
 // Elements between partitions lie on an entity of their own, cut from one of higher dimension: then
-// there is no elementary entity of their dimension. Gmsh lists the groups of the latter there, whose
-// numbers are those of other groups in the dimension of the cut; they are not taken.
+// there is no elementary entity of their dimension. Gmsh lists the groups of the latter there,
+// whose numbers are those of other groups in the dimension of the cut; they are not taken.
 Tag read_partition(MshReader& reader, int dim) {
   Scanner& scanner = reader.scanner;
   const Tag parent_dimension = scanner.integer();

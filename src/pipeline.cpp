@@ -101,7 +101,7 @@ class Run {
         report_(report),
         timer_(report.timings, watch),
         surfaces_(timer_.time(&Timings::surface, [&] { return select(options); })),
-        walls_(timer_.time(&Timings::volume, [&] { return make_walls(options); })),
+        walls_(timer_.time(&Timings::volume, [&] { return make_walls(); })),
         volume_mover_(timer_.time(
             &Timings::volume,
             [&] { return VolumeMover(mesh, surfaces_.surfaces, walls_, last_method(options)); })),
@@ -153,13 +153,17 @@ class Run {
     return rough;
   }
 
-  Walls make_walls(const RoughenOptions& options) const {
-    const int cell_dimension = surfaces_.surfaces.front().dimension + 1;
-    return find_walls(
-        mesh_, surfaces_.surfaces,
-        {.can_slide = options.volume == VolumeChoice::move && n_elements(mesh_, cell_dimension) > 0,
-         .moving = detail::moving_nodes(surfaces_, mesh_),
-         .period = detail::period_of(surfaces_)});
+  /// Something behind them follows.
+  bool walls_can_slide() const {
+    return report_.request.volume == VolumeChoice::move &&
+           n_elements(mesh_, surfaces_.surfaces.front().dimension + 1) > 0;
+  }
+
+  Walls make_walls() const {
+    return find_walls(mesh_, surfaces_.surfaces,
+                      {.can_slide = walls_can_slide(),
+                       .moving = detail::moving_nodes(surfaces_, mesh_),
+                       .period = detail::period_of(surfaces_)});
   }
 
   SurfaceMover make_surface_mover() const {
@@ -171,7 +175,7 @@ class Run {
   Index n_torn() const { return static_cast<Index>(walls_.torn.size()); }
 
   SurfaceChecker make_checker() const {
-    detail::warn_of_walls(report_, n_torn());
+    detail::warn_of_walls(report_, n_torn(), walls_can_slide());
     SurfaceChecker checker(mesh_, surfaces_.surfaces, following_nodes(walls_, surfaces_.surfaces));
     for (std::size_t s = 0; s < surfaces_.surfaces.size(); ++s) {
       const Roughness& request = surfaces_.plans[s].request;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Walls beside rough surfaces keep their planes and outlines, and images stay images.
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <numbers>
@@ -21,6 +23,7 @@
 #include "support/meshes.hpp"
 #include "support/only.hpp"
 #include "support/process.hpp"
+#include "support/second_order.hpp"
 
 using namespace roughmesh;
 
@@ -195,6 +198,33 @@ TEST(Walls, SidesKeepTheirPlanesToTheBitAndTheBottomStays) {
   }
   EXPECT_EQ(n_sliding, 4 * 8 * 7);  // all of the sides but rim and bottom
   EXPECT_LE(moved.error(), 1e-12);
+}
+
+// Elements of every shape, with nodes in the middle of edges and faces as well, on both sides of a
+// rough interface.
+TEST(Walls, SidesKeepTheirPlanesForEveryShapeAndOrder) {
+  for (const ElementShape shape : {ElementShape::tetrahedron, ElementShape::hexahedron,
+                                   ElementShape::prism, ElementShape::pyramid})
+    for (const bool second : {false, true}) {
+      SCOPED_TRACE(name(test::first_order(shape)) + (second ? " of order 2" : ""));
+      const Mesh cells = hilly(test::cell_box(shape, 6));
+      const Moved moved = move(second ? test::second_order(cells, true) : cells, "middle",
+                               [](const Vec3& x) { return 0.05 * waves(x); });
+      EXPECT_TRUE(check_mesh(moved.mesh, moved.nodes).valid());
+      EXPECT_TRUE(moved.walls.torn.empty());
+      int n_sliding = 0;
+      for (Index node = 0; node < moved.mesh.n_nodes(); ++node) {
+        const Vec3& x = moved.mesh.nodes[node];
+        for (const int axis : {0, 1}) {
+          if (x[axis] == 0 || x[axis] == 1) {
+            EXPECT_EQ(moved.nodes[node][axis], x[axis]);
+          }
+        }
+        n_sliding += is_on_side(x) && moved.nodes[node] != x;
+      }
+      const int per_cell = second ? 2 : 1, rim = 4 * 6 * per_cell;
+      EXPECT_EQ(n_sliding, rim * (6 * per_cell - 1));  // all of the sides but bottom and top
+    }
 }
 
 TEST(Walls, SlidingKeepsElementsValidWhereWallsThatStayDoNot) {
@@ -486,6 +516,77 @@ TEST(Walls, NodesLinkedByRotationsStay) {
     EXPECT_EQ(moved.nodes[slave], mesh.nodes[slave]);
     EXPECT_EQ(moved.nodes[master], mesh.nodes[master]);
   }
+}
+
+namespace {
+
+// Sixty degrees around the z axis, between the radii 1 and 2, whose ends "first" and "last" are
+// linked by a rotation.
+Mesh sector(int divisions) {
+  using std::numbers::pi;
+  Mesh mesh = box(divisions);
+  add_group(mesh, 5, "first", [](const Vec3& x) { return x.x() == 0; });
+  add_group(mesh, 6, "last", [](const Vec3& x) { return x.x() == 1; });
+  const double c = 0.5, d = std::sqrt(0.75);
+  PeriodicLink link{2, 6, 5, {c, d, 0, 0, -d, c, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, {}};
+  for (Index node = 0; node < mesh.n_nodes(); ++node)
+    if (mesh.nodes[node].x() == 1) link.nodes.emplace_back(node, node - divisions);
+  mesh.periodic_links = {link};
+  for (Vec3& x : mesh.nodes) {
+    const double angle = -pi / 3 * x.x(), radius = 1 + x.y();
+    x = Vec3(radius * std::cos(angle), radius * std::sin(angle), x.z());
+  }
+  return mesh;
+}
+
+// Rough up to both ends, the roughness cannot be; where it fades before, ends stay images.
+void expect_sector(const Mesh& mesh, RoughenOptions options, const std::vector<std::string>& fade) {
+  const auto run = [&](const Deliver& deliver) { roughen(mesh, options, deliver); };
+  EXPECT_THROW(run([](const RoughMesh&, Report&) {}), InputError);
+  options.surfaces[0].fade = fade;
+  run([&](const RoughMesh& rough, Report&) {
+    EXPECT_NE(rough.mesh.nodes, mesh.nodes);
+    EXPECT_TRUE(rough.check.valid());
+    for (const PeriodicLink& link : mesh.periodic_links) {
+      const Eigen::Affine3d to_slave(
+          Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(link.affine.data()));
+      for (const auto& [slave, master] : link.nodes)
+        EXPECT_NEAR((rough.mesh.nodes[slave] - to_slave * rough.mesh.nodes[master]).norm(), 0,
+                    1e-14);
+    }
+  });
+}
+
+}  // namespace
+
+TEST(Walls, EndsOfASectorStayImagesWhereTheRoughnessFades) {
+  RoughenOptions options;
+  options.surfaces[0].group = {"top"};
+  options.surfaces[0].rms = 0.05;
+  options.surfaces[0].length = {0.4};
+  expect_sector(sector(8), options, {"0.3:first", "0.3:last"});
+}
+
+// A file of other people, whose elements of order 3 are taken at their corners.
+TEST(Walls, ASectorOfATorusStaysOne) {
+  const char* data = std::getenv("ROUGHMESH_DATA");
+  if (data == nullptr) GTEST_SKIP() << "ROUGHMESH_DATA is not set";
+  Mesh mesh = read_mesh(std::filesystem::path(data) / "meshes/periodic-torus-sector.msh");
+  for (ElementBlock& block : mesh.blocks) {
+    ElementBlock corners = block;
+    corners.type = test::first_order(block.type.shape);
+    corners.nodes.clear();
+    for (Index e = 0; e < block.size(); ++e)
+      for (int k = 0; k < corners.type.n_nodes; ++k)
+        corners.nodes.push_back(block.element(e)[static_cast<std::size_t>(k)]);
+    block = std::move(corners);
+  }
+  ASSERT_EQ(mesh.periodic_links.size(), 5U);
+  RoughenOptions options;
+  options.surfaces[0].group = {"3"};
+  options.surfaces[0].rms = 0.02;
+  options.surfaces[0].length = {1};
+  expect_sector(mesh, options, {"0.5:1", "0.5:2"});
 }
 
 // ---- Meshes of gmsh ----
