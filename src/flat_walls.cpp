@@ -120,6 +120,7 @@ std::vector<WallPatch> fit_patches(const Mesh& mesh, std::span<const WallFace> f
       fit.distance = std::max(fit.distance, std::abs(fit.normal.dot(mesh.nodes[node] - fit.point)));
   }
   std::vector<WallPatch> patches;
+  patches.reserve(fits.size());
   for (const Fit& fit : fits)
     patches.push_back({fit.normal, fit.can_move && fit.distance <= flat * fit.extent()});
   return patches;

@@ -92,7 +92,7 @@ struct Contact {
   Index patch = 0;
   Index meeting = 0;
 
-  friend auto operator<=>(const Contact&, const Contact&) = default;
+  friend bool operator==(const Contact&, const Contact&) = default;
 };
 
 // By meeting; each once.
