@@ -109,11 +109,12 @@ void keep_thinner(std::optional<ThinWall>& thinnest, const std::optional<ThinWal
 
 }  // namespace
 
-SurfaceChecker::SurfaceChecker(const Mesh& mesh, std::span<const Surface> surfaces) {
+SurfaceChecker::SurfaceChecker(const Mesh& mesh, std::span<const Surface> surfaces,
+                               std::span<const std::uint8_t> left_out) {
   if (surfaces.empty()) throw InputError("no surface to check; give one or more");
   auto plan = std::make_unique<Plan>();
   const Surface& first = surfaces.front();
-  plan->rest = {detail::collect_faces(mesh, first.dimension), first.plane_normal,
+  plan->rest = {detail::collect_faces(mesh, first.dimension, left_out), first.plane_normal,
                 axis_of(first.plane_normal)};
   plan->node_tags = mesh.node_tags;
   const CheckedFaces& faces = plan->rest.faces;

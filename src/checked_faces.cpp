@@ -12,6 +12,7 @@
 #include "parallel.hpp"
 #include "surface_faces.hpp"
 #include "volume_faces.hpp"
+#include "wall_faces.hpp"
 
 namespace roughmesh::detail {
 namespace {
@@ -37,10 +38,15 @@ void add_facets(const ElementType& type, std::span<const Index> nodes, const Fac
   }
 }
 
+// Faces between partitions are none of any surface.
+bool is_face(const Mesh& mesh, const ElementBlock& block, int face_dimension) {
+  return dimension(block.type.shape) == face_dimension && !is_between_partitions(mesh, block);
+}
+
 std::vector<Face> faces_of(const Mesh& mesh, int face_dimension) {
   std::vector<Face> faces;
   for (const ElementBlock& block : mesh.blocks)
-    for (Index e = 0; dimension(block.type.shape) == face_dimension && e < block.size(); ++e)
+    for (Index e = 0; is_face(mesh, block, face_dimension) && e < block.size(); ++e)
       add_facets(block.type, block.element(e), {block.tags[e], block.type.shape, false}, faces);
   for (const CellFace& side : boundary_faces(mesh, face_dimension + 1))
     add_facets(side.type, side.all(), {side.element, side.type.shape, true}, faces);
@@ -145,8 +151,14 @@ void add_facets(CheckedFaces& faces) {
 
 }  // namespace
 
-CheckedFaces collect_faces(const Mesh& mesh, int dimension) {
+CheckedFaces collect_faces(const Mesh& mesh, int dimension,
+                           std::span<const std::uint8_t> left_out) {
   std::vector<Face> faces = faces_of(mesh, dimension);
+  if (!left_out.empty())
+    std::erase_if(faces, [&](const Face& face) {
+      const auto nodes = face.corners();
+      return std::any_of(nodes.begin(), nodes.end(), [&](Index n) { return left_out[n] != 0; });
+    });
   drop_repetitions(faces);
   CheckedFaces result;
   result.dimension = dimension;

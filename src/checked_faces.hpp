@@ -56,7 +56,9 @@ struct CheckedFaces {
 };
 
 /// @param dimension  2 for faces, 1 for the lines of a planar mesh
-CheckedFaces collect_faces(const Mesh& mesh, int dimension);
+/// @param left_out   n_nodes flags: faces with such a node are left out; empty: none are
+CheckedFaces collect_faces(const Mesh& mesh, int dimension,
+                           std::span<const std::uint8_t> left_out = {});
 
 /// Of each point, a number that points have in common where they are one in the input and still
 /// after they moved; that of one of these points.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "conjugate_gradients.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "parallel.hpp"
 
@@ -42,8 +44,10 @@ Array3d ratio(const Array3d& a, const Array3d& b) { return (b > 0).select(a / b,
 
 class Solver {
  public:
-  Solver(const Matrix& matrix, std::span<const Vector3d> load)
+  Solver(const Matrix& matrix, std::span<const Vector3d> load, std::span<const SlidingRow> sliding)
       : matrix_(matrix),
+        sliding_(sliding),
+        are_joined_(std::any_of(sliding.begin(), sliding.end(), joins_components)),
         inverse_diagonal_(load.size()),
         x_(load.size(), Vector3d::Zero()),
         residual_(load.begin(), load.end()),
@@ -52,9 +56,15 @@ class Solver {
     const Eigen::VectorXd diagonal = matrix.diagonal();
     for (std::size_t i = 0; i < load.size(); ++i)
       inverse_diagonal_[i] = 1 / diagonal[static_cast<Eigen::Index>(i)];
-    load_square_ = sum_over_rows(n(), [&](std::size_t i) { return residual_[i].array().square(); });
+    if (!sliding_.empty()) number_of_row_.assign(load.size(), -1);
+    for (std::size_t k = 0; k < sliding_.size(); ++k) {
+      number_of_row_[static_cast<std::size_t>(sliding_[k].row)] = static_cast<std::ptrdiff_t>(k);
+      residual_[static_cast<std::size_t>(sliding_[k].row)] =
+          sliding_[k].free * load[static_cast<std::size_t>(sliding_[k].row)];
+    }
+    load_square_ = sum([&](std::size_t i) { return residual_[i].array().square(); });
     residual_square_ = load_square_;
-    energy_ = sum_over_rows(n(), [&](std::size_t i) -> Array3d {
+    energy_ = sum([&](std::size_t i) -> Array3d {
       return inverse_diagonal_[i] * residual_[i].array().square();
     });
   }
@@ -66,18 +76,18 @@ class Solver {
 
   void step() {
     turn();
-    const Array3d curvature = sum_over_rows(n(), [&](std::size_t i) -> Array3d {
-      product_[i] = row_product(matrix_, i, direction_);
+    const Array3d curvature = sum([&](std::size_t i) -> Array3d {
+      product_[i] = within_subspace(i, row_product(matrix_, i, direction_));
       return product_[i].array() * direction_[i].array();
     });
     const Array3d length = ratio(energy_, curvature);
-    residual_square_ = sum_over_rows(n(), [&](std::size_t i) -> Array3d {
+    residual_square_ = sum([&](std::size_t i) -> Array3d {
       x_[i].array() += length * direction_[i].array();
       residual_[i].array() -= length * product_[i].array();
       return residual_[i].array().square();
     });
     previous_energy_ = energy_;
-    energy_ = sum_over_rows(n(), [&](std::size_t i) -> Array3d {
+    energy_ = sum([&](std::size_t i) -> Array3d {
       return inverse_diagonal_[i] * residual_[i].array().square();
     });
   }
@@ -86,6 +96,20 @@ class Solver {
 
  private:
   std::size_t n() const { return x_.size(); }
+
+  // Subspaces along the axes leave three systems; others make them one.
+  static bool joins_components(const SlidingRow& sliding) {
+    return !Eigen::Matrix3d(sliding.free.diagonal().asDiagonal()).isApprox(sliding.free, 0);
+  }
+  template <class Visit>
+  Array3d sum(Visit&& visit) const {
+    const Array3d sums = sum_over_rows(n(), std::forward<Visit>(visit));
+    return are_joined_ ? Array3d::Constant(sums.sum()) : sums;
+  }
+  Vector3d within_subspace(std::size_t row, const Vector3d& value) const {
+    if (number_of_row_.empty() || number_of_row_[row] < 0) return value;
+    return sliding_[static_cast<std::size_t>(number_of_row_[row])].free * value;
+  }
 
   void turn() {
     const Array3d share = ratio(energy_, previous_energy_);
@@ -97,6 +121,9 @@ class Solver {
   }
 
   const Matrix& matrix_;
+  std::span<const SlidingRow> sliding_;
+  bool are_joined_ = false;
+  std::vector<std::ptrdiff_t> number_of_row_;  // in sliding_, or -1; empty where none slides
   std::vector<double> inverse_diagonal_;
   std::vector<Vector3d> x_, residual_, direction_, product_;
   Array3d load_square_, residual_square_;
@@ -105,8 +132,9 @@ class Solver {
 
 }  // namespace
 
-Solution solve(const Matrix& matrix, std::span<const Vector3d> load, const SolveOptions& options) {
-  Solver solver(matrix, load);
+Solution solve(const Matrix& matrix, std::span<const Vector3d> load,
+               std::span<const SlidingRow> sliding, const SolveOptions& options) {
+  Solver solver(matrix, load, sliding);
   Solution result;
   result.residual = solver.relative_residual();
   while (result.residual > options.tolerance && result.iterations < options.most_iterations &&

@@ -12,6 +12,10 @@
 namespace roughmesh::detail {
 namespace {
 
+// Of its height, by which a node on a wall may slide along the surface without any other: a tenth
+// of a cell where heights are two.
+constexpr double little_slide = 0.05;
+
 Vec3 along_surface(const Vec3& u, const Vec3& normal) { return u - normal.dot(u) * normal; }
 
 std::size_t place_of(Index node, std::span<const Index> moved) {
@@ -96,7 +100,10 @@ void EdgeMotion::find_bound(const std::vector<std::vector<Vec3>>& across, const 
       normals.push_back(sectors_.all[i].normal);
     }
     bound_of_vertex_[v] = static_cast<Index>(bound_.size());
-    bound_.push_back({v, std::move(moving), LeastDisplacement(normals, across[v])});
+    const LeastDisplacement least(normals, across[v]);
+    const bool slides = across[v].empty() || normals.size() != 1 ||
+                        (least.solve(normals[0], 1) - normals[0]).norm() > little_slide;
+    bound_.push_back({v, std::move(moving), least, slides});
   }
 }
 
@@ -134,7 +141,8 @@ std::vector<std::array<Index, 3>> EdgeMotion::faces_to_stretch(
     for (const Index seat : seats(f)) pieces.unite(seats(f)[0], seat);
   std::vector<std::uint8_t> has_bound(sectors_.all.size(), 0);
   for (std::size_t i = 0; i < sectors_.all.size(); ++i)
-    if (is_bound(sectors_.all[i].vertex)) has_bound[pieces.smallest(static_cast<Index>(i))] = 1;
+    if (is_bound(sectors_.all[i].vertex) && bound_[bound_of_vertex_[sectors_.all[i].vertex]].slides)
+      has_bound[pieces.smallest(static_cast<Index>(i))] = 1;
   std::vector<std::array<Index, 3>> triangles;
   for (Index f = 0; f < joined_.n_faces(); ++f) {
     const auto corners = seats(f);

@@ -33,6 +33,7 @@ class EdgeMotion {
     Index vertex = 0;
     std::vector<Index> sectors;  ///< those that move
     LeastDisplacement least;
+    bool slides = true;  ///< by a share of its height that faces have to be stretched for
   };
   using Images = std::vector<std::vector<Index>>;
 

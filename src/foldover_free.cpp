@@ -134,11 +134,36 @@ LBFGSpp::LBFGSParam<double> parameters(const UntangleOptions& options) {
   return result;
 }
 
+// A function of the numbers that the coordinates of tied nodes depend on.
+template <int dim>
+class TiedDistortion {
+ public:
+  TiedDistortion(Distortion<dim>& distortion, const TiedPoints<dim>& tied)
+      : distortion_(distortion), tied_(tied), start_(distortion.free_points()) {}
+
+  void set_epsilon(double epsilon) { distortion_.set_epsilon(epsilon); }
+  double operator()(const Eigen::VectorXd& q, Eigen::VectorXd& gradient) {
+    Eigen::VectorXd by_points;
+    const double value = distortion_(points(q), by_points);
+    gradient = tied_.reduced(by_points);
+    return value;
+  }
+  Determinants determinants(const Eigen::VectorXd& q) {
+    return distortion_.determinants(points(q));
+  }
+
+ private:
+  Eigen::VectorXd points(const Eigen::VectorXd& q) const { return start_ + tied_.shifts(q); }
+
+  Distortion<dim>& distortion_;
+  const TiedPoints<dim>& tied_;
+  Eigen::VectorXd start_;
+};
+
 // Minimizes from x on; false where the line search fails, which it tells by exceptions of these
 // kinds.
-template <int dim>
-bool minimize(LBFGSpp::LBFGSSolver<double>& solver, Distortion<dim>& distortion,
-              Eigen::VectorXd& x) {
+template <class Energy>
+bool minimize(LBFGSpp::LBFGSSolver<double>& solver, Energy& distortion, Eigen::VectorXd& x) {
   double value = 0;
   try {
     solver.minimize(distortion, x, value);
@@ -151,8 +176,8 @@ bool minimize(LBFGSpp::LBFGSSolver<double>& solver, Distortion<dim>& distortion,
 }
 
 // One round of L-BFGS. Where it fails, it has gone as far as it can.
-template <int dim>
-void descend(Distortion<dim>& distortion, const UntangleOptions& options, Eigen::VectorXd& x) {
+template <class Energy>
+void descend(Energy& distortion, const UntangleOptions& options, Eigen::VectorXd& x) {
   const auto parameter = parameters(options);
   LBFGSpp::LBFGSSolver<double> solver(parameter);
   Eigen::VectorXd start = x, gradient;
@@ -169,8 +194,8 @@ double epsilon_for(double smallest_determinant) {
 
 // A round that starts without inverted simplices keeps them so, and is the last. Rounds in vain
 // tell that there may be no solution.
-template <int dim>
-bool minimize(Distortion<dim>& distortion, const UntangleOptions& options, Eigen::VectorXd& x) {
+template <class Energy>
+bool minimize(Energy& distortion, const UntangleOptions& options, Eigen::VectorXd& x) {
   Determinants now = distortion.determinants(x);
   int in_vain = 0;
   for (int round = 0; round < options.most_rounds && in_vain < options.most_in_vain; ++round) {
@@ -185,18 +210,36 @@ bool minimize(Distortion<dim>& distortion, const UntangleOptions& options, Eigen
   return distortion.determinants(x).n_negative == 0;
 }
 
+// Moves the free nodes of a patch; returns how far, and whether none of its simplices is inverted.
+template <int dim>
+std::pair<Eigen::VectorXd, bool> solve(Distortion<dim>& distortion, const Patch& patch,
+                                       const Simplices& simplices, const Frame<dim>& axes,
+                                       const UntangleOptions& options) {
+  const std::span free_nodes = std::span(patch.nodes).first(static_cast<std::size_t>(patch.n_free));
+  const Eigen::VectorXd before = distortion.free_points();
+  if (std::none_of(free_nodes.begin(), free_nodes.end(),
+                   [&](Index node) { return simplices.ties.is_tied(node); })) {
+    Eigen::VectorXd x = before;
+    const bool is_valid = minimize(distortion, options, x);
+    return {x - before, is_valid};
+  }
+  const TiedPoints<dim> tied(simplices.ties, free_nodes, axes, before);
+  TiedDistortion<dim> energy(distortion, tied);
+  Eigen::VectorXd q = tied.start();
+  const bool is_valid = minimize(energy, options, q);
+  return {tied.shifts(q), is_valid};
+}
+
 template <int dim>
 bool untangle_patch(const Patch& patch, const Simplices& simplices, std::vector<Vec3>& positions,
                     const UntangleOptions& options) {
   const double unit = unit_of(patch, simplices.rest);
   const Frame<dim> axes = frame_of<dim>(simplices.plane_normal);
   Distortion<dim> distortion = make_distortion<dim>(axes / unit, patch, simplices, positions);
-  const Eigen::VectorXd before = distortion.free_points();
-  Eigen::VectorXd x = before;
-  const bool is_valid = minimize(distortion, options, x);
+  const auto [shifts, is_valid] = solve<dim>(distortion, patch, simplices, axes, options);
   for (Index i = 0; i < patch.n_free; ++i) {
     const Eigen::Index at = static_cast<Eigen::Index>(i) * dim;
-    positions[patch.nodes[i]] += unit * axes.transpose() * (x - before).template segment<dim>(at);
+    positions[patch.nodes[i]] += unit * axes.transpose() * shifts.template segment<dim>(at);
   }
   return is_valid;
 }

@@ -10,6 +10,7 @@
 #include "roughmesh/mesh.hpp"
 
 #include "deforming.hpp"
+#include "tied_nodes.hpp"
 
 namespace roughmesh::detail {
 
@@ -28,6 +29,7 @@ struct Simplices {
   /// From this node on nodes are new, and the rest shape of a tetrahedron with one is the regular
   /// one with the mean of its edges.
   Index first_new_node = std::numeric_limits<Index>::max();
+  NodeTies ties = {};  ///< of free nodes; those that move alike are free together
 };
 
 /// Moves the free nodes to the least distortion of the simplices around them, relative to the rest

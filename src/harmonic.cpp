@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "roughmesh/error.hpp"
 
-#include "conjugate_gradients.hpp"
 #include "corners.hpp"
 #include "parallel.hpp"
 
@@ -221,21 +221,31 @@ class Assembly {
   // Returns the diagonal entry.
   double add_simplices(Index i, Row& unknown, Row& given) const {
     double diagonal = 0;
+    Index last = -1;
     for (const Index number : adjacency_.at(static_cast<std::size_t>(i))) {
+      if (std::exchange(last, number) == number) continue;  // two of its corners move alike
       const Simplex& t = simplices_[number];
       const Gradients g = gradients(nodes_, t);
       if (g.is_flat) continue;
-      std::size_t own = 0;
-      while (roles_.unknown[t[own]] != i) ++own;
-      diagonal += scale_ * g.of_corner[own].squaredNorm();
-      for (std::size_t k = 0; k < n_corners(t); ++k) {
-        if (k == own) continue;
-        const double value = scale_ * g.of_corner[own].dot(g.of_corner[k]);
-        if (roles_.unknown[t[k]] >= 0)
-          unknown.add(roles_.unknown[t[k]], value);
-        else if (roles_.given[t[k]] >= 0)
-          given.add(roles_.given[t[k]], value);
-      }
+      for (std::size_t own = 0; own < n_corners(t); ++own)
+        if (roles_.unknown[t[own]] == i) diagonal += add_corner(t, g, own, unknown, given);
+    }
+    return diagonal;
+  }
+
+  double add_corner(const Simplex& t, const Gradients& g, std::size_t own, Row& unknown,
+                    Row& given) const {
+    double diagonal = scale_ * g.of_corner[own].squaredNorm();
+    for (std::size_t k = 0; k < n_corners(t); ++k) {
+      if (k == own) continue;
+      const double value = scale_ * g.of_corner[own].dot(g.of_corner[k]);
+      const Index other = roles_.unknown[t[k]];
+      if (other >= 0 && other == roles_.unknown[t[own]])
+        diagonal += value;
+      else if (other >= 0)
+        unknown.add(other, value);
+      else if (roles_.given[t[k]] >= 0)
+        given.add(roles_.given[t[k]], value);
     }
     return diagonal;
   }
@@ -263,6 +273,7 @@ bool is_flat(std::span<const Vec3> nodes, const Simplex& simplex) {
 
 HarmonicExtension::HarmonicExtension(std::span<const Vec3> nodes,
                                      std::span<const Simplex> simplices, const NodeRoles& roles) {
+  sliding_ = roles.sliding;
   const Assembly assembly(nodes, simplices, roles);
   const auto n = static_cast<std::size_t>(roles.n_unknown);
   std::vector<RowRange> stiffness((n + rows_per_range - 1) / rows_per_range);
@@ -283,7 +294,7 @@ std::vector<Vec3> HarmonicExtension::extend(std::span<const Vec3> given) const {
         load[i] -= entry.value() * given[entry.col()];
   });
   const SolveOptions options;
-  Solution solution = solve(stiffness_, load, options);
+  Solution solution = solve(stiffness_, load, sliding_, options);
   require_convergence(solution, options.tolerance);
   return std::move(solution.values);
 }

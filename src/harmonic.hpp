@@ -10,6 +10,8 @@
 
 #include "roughmesh/mesh.hpp"
 
+#include "conjugate_gradients.hpp"
+
 namespace roughmesh::detail {
 
 /// Positions of the corners of a tetrahedron in an array of nodes; of a triangle, whose fourth is
@@ -22,18 +24,20 @@ bool is_flat(std::span<const Vec3> nodes, const Simplex& simplex);
 /// What is known about the displacement of each node. A node is unknown, given or, if neither
 /// number is set, stays where it is.
 struct NodeRoles {
-  std::vector<Index> unknown;  ///< per node: number of its unknown, or -1
-  std::vector<Index> given;    ///< per node: number of its given displacement, or -1
+  /// Per node: number of its unknown, or -1. Nodes that move alike have one number, given or not.
+  std::vector<Index> unknown;
+  std::vector<Index> given;  ///< per node: number of its given displacement, or -1
   Index n_unknown = 0;
   Index n_given = 0;
+  std::vector<SlidingRow> sliding = {};  ///< unknowns that stay in a plane or on a line
 };
 
 /// Minimizes, for each component of the displacement u,
 ///
 ///     sum over simplices of  1/V * integral |grad u|^2             (docs/math.md, eq. 16)
 ///
-/// with u linear on each simplex, so that small ones deform least. Simplices are tetrahedra of
-/// volume V, or triangles of area V in one plane.
+/// under m . u = 0 at nodes that slide (eq. 58), with u linear on each simplex, so that small ones
+/// deform least. Simplices are tetrahedra of volume V, or triangles of area V in one plane.
 class HarmonicExtension {
  public:
   /// Nearly flat simplices, whose weight would drown all others, are left out; an unknown that
@@ -52,6 +56,7 @@ class HarmonicExtension {
  private:
   Matrix stiffness_;  // unknown by unknown
   Matrix coupling_;   // unknown by given
+  std::vector<SlidingRow> sliding_;
 };
 
 }  // namespace roughmesh::detail

@@ -44,7 +44,8 @@ std::vector<Tag> read_groups(MshReader& reader) {
 }
 
 // Elements between partitions lie on an entity of their own, cut from one of higher dimension: then
-// there is no elementary entity of their dimension.
+// there is no elementary entity of their dimension. Gmsh lists the groups of the latter there,
+// whose numbers are those of other groups in the dimension of the cut; they are not taken.
 Tag read_partition(MshReader& reader, int dim) {
   Scanner& scanner = reader.scanner;
   const Tag parent_dimension = scanner.integer();
@@ -61,6 +62,7 @@ void read_entity(MshReader& reader, int dim, bool is_partitioned) {
   skip_numbers(scanner, dim == 0 ? 3 : 6,
                sizeof(double));  // point or box, which need not be finite
   entity.groups = read_groups(reader);
+  if (entity.elementary == 0) entity.groups.clear();
   if (dim > 0) skip_list(reader, "bounding entities");
   reader.entities[{dim, tag}] = std::move(entity);
 }

@@ -2,6 +2,7 @@
 #include "roughmesh/move_volume.hpp"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 
 #include <fmt/format.h>
@@ -14,7 +15,6 @@
 #include "plane.hpp"
 #include "repair_volume.hpp"
 #include "second_order.hpp"
-#include "walls.hpp"
 
 namespace roughmesh {
 
@@ -22,6 +22,10 @@ struct VolumeMover::Plan {
   std::vector<Vec3> nodes;
   std::vector<Index> moved_nodes;  // of the surfaces
   std::vector<Index> free_nodes;
+  std::vector<Index> unknown_of_free;  // of each free node
+  /// Nodes of no surface that are images of one that moves: (node, number of its displacement).
+  std::vector<std::array<Index, 2>> copies;
+  std::vector<std::array<Index, 2>> images;  // free nodes that move as an earlier one: (node, it)
   // None without elements to deform.
   std::unique_ptr<const detail::HarmonicExtension> extension;
   std::unique_ptr<const detail::Followers> followers;
@@ -44,9 +48,11 @@ bool is_cell(const ElementBlock& block, int cell_dimension) {
 // Corners of cells that are joined to a given node without crossing a wall. Beyond walls nothing
 // moves, whatever elements there are.
 NodeFlags reached_corners(const Mesh& mesh, int cell_dimension, const detail::NodeRoles& roles,
-                          const NodeFlags& on_wall) {
-  const auto can_move = [&](Index node) { return roles.given[node] >= 0 || !on_wall[node]; };
+                          const Walls& walls) {
+  const auto can_move = [&](Index node) { return roles.given[node] >= 0 || !walls.stays[node]; };
   detail::DisjointSets sets(mesh.nodes.size());
+  for (std::size_t node = 0; node < walls.images.size(); ++node)
+    sets.unite(static_cast<Index>(node), walls.images[node]);
   NodeFlags is_corner(mesh.nodes.size(), 0);
   for (const ElementBlock& block : mesh.blocks)
     for (Index e = 0; is_cell(block, cell_dimension) && e < block.size(); ++e) {
@@ -74,9 +80,46 @@ detail::NodeRoles given_roles(const Mesh& mesh, std::span<const Index> moved_nod
   return roles;
 }
 
-void add_unknowns(const NodeFlags& is_reached, detail::NodeRoles& roles) {
-  for (std::size_t node = 0; node < is_reached.size(); ++node)
-    if (is_reached[node] && roles.given[node] < 0) roles.unknown[node] = roles.n_unknown++;
+Index image(const Walls& walls, Index node) {
+  return walls.images.empty() ? node : walls.images[node];
+}
+
+// Images of nodes whose displacement is given.
+std::vector<std::array<Index, 2>> give_to_images(const Walls& walls, detail::NodeRoles& roles) {
+  std::vector<std::array<Index, 2>> copies;
+  std::vector<Index> given_of_image(walls.images.size(), -1);
+  for (std::size_t node = 0; node < given_of_image.size(); ++node)
+    if (roles.given[node] >= 0) given_of_image[walls.images[node]] = roles.given[node];
+  for (std::size_t node = 0; node < given_of_image.size(); ++node) {
+    const Index given = given_of_image[walls.images[node]];
+    if (given < 0 || roles.given[node] >= 0 || walls.stays[node] != 0) continue;
+    roles.given[node] = given;
+    copies.push_back({static_cast<Index>(node), given});
+  }
+  return copies;
+}
+
+Eigen::Matrix3d free_projection(std::span<const SlidingNode> normals) {
+  Eigen::Matrix3d free = Eigen::Matrix3d::Identity();
+  for (const SlidingNode& each : normals) free -= each.normal * each.normal.transpose();
+  return free;
+}
+
+// Nodes that move alike have one unknown, numbered with the first of them.
+void add_unknowns(const NodeFlags& is_reached, const Walls& walls, const detail::NodeTies& ties,
+                  detail::NodeRoles& roles) {
+  std::vector<Index> unknown_of_image(is_reached.size(), -1);
+  for (std::size_t i = 0; i < is_reached.size(); ++i) {
+    if (!is_reached[i] || roles.given[i] >= 0) continue;
+    const auto node = static_cast<Index>(i);
+    Index& unknown = unknown_of_image[image(walls, node)];
+    if (unknown < 0) {
+      unknown = roles.n_unknown++;
+      if (const auto normals = ties.of(node); !normals.empty())
+        roles.sliding.push_back({unknown, free_projection(normals)});
+    }
+    roles.unknown[i] = unknown;
+  }
 }
 
 void require_movable_elements(const Mesh& mesh, const detail::NodeRoles& roles) {
@@ -97,8 +140,8 @@ NodeFlags free_flags(const detail::NodeRoles& roles) {
 }
 
 detail::Followers make_followers(const Mesh& mesh, int cell_dimension,
-                                 const detail::NodeRoles& roles, const NodeFlags& on_wall) {
-  NodeFlags is_settled = on_wall;
+                                 const detail::NodeRoles& roles, const Walls& walls) {
+  NodeFlags is_settled = walls.stays;
   for (std::size_t node = 0; node < is_settled.size(); ++node)
     if (roles.given[node] >= 0 || roles.unknown[node] >= 0) is_settled[node] = 1;
   return {mesh, cell_dimension, is_settled};
@@ -154,15 +197,24 @@ std::vector<Vec3> added(std::span<const Vec3> nodes, std::vector<Vec3> shifts) {
   return shifts;
 }
 
+// What moves alike differs by round-off of several steps; then by that of one.
+void equal_images(const VolumeMover::Plan& plan, std::vector<Vec3>& nodes) {
+  for (const auto& [node, first] : plan.images)
+    nodes[node] = plan.nodes[node] + (nodes[first] - plan.nodes[first]);
+}
+
 // Other nodes follow the corners, wherever these went.
 MovedVolume move_interior(const VolumeMover::Plan& plan, std::span<const Vec3> displacements,
                           std::vector<Vec3> shifts) {
   const std::vector<Vec3> interior = plan.extension->extend(displacements);
-  for (std::size_t i = 0; i < interior.size(); ++i) shifts[plan.free_nodes[i]] = interior[i];
+  for (std::size_t i = 0; i < plan.free_nodes.size(); ++i)
+    shifts[plan.free_nodes[i]] = interior[plan.unknown_of_free[i]];
+  for (const auto& [node, given] : plan.copies) shifts[node] = displacements[given];
   plan.followers->fill(shifts);
   MovedVolume result{added(plan.nodes, std::move(shifts)), VolumeMethod::harmonic, nullptr};
   if (!plan.repair) return result;
   result = plan.repair->mend(std::move(result.nodes));
+  if (result.method != VolumeMethod::harmonic) equal_images(plan, result.nodes);
   if (result.method == VolumeMethod::harmonic || plan.followers->nodes().empty()) return result;
   shifts = result.nodes;
   for (std::size_t node = 0; node < plan.nodes.size(); ++node) shifts[node] -= plan.nodes[node];
@@ -174,32 +226,53 @@ MovedVolume move_interior(const VolumeMover::Plan& plan, std::span<const Vec3> d
 
 }  // namespace
 
-VolumeMover::VolumeMover(const Mesh& mesh, std::span<const Surface> surfaces, VolumeMethod last) {
+namespace {
+
+Walls walls_that_stay(const Mesh& mesh, std::span<const Surface> surfaces) {
+  check_surfaces(mesh, surfaces);
+  return find_walls(mesh, surfaces, {.can_slide = false});
+}
+
+}  // namespace
+
+VolumeMover::VolumeMover(const Mesh& mesh, std::span<const Surface> surfaces, VolumeMethod last)
+    : VolumeMover(mesh, surfaces, walls_that_stay(mesh, surfaces), last) {}
+
+VolumeMover::VolumeMover(const Mesh& mesh, std::span<const Surface> surfaces, const Walls& walls,
+                         VolumeMethod last) {
   check_surfaces(mesh, surfaces);
   auto plan = std::make_unique<Plan>();
   plan->nodes = mesh.nodes;
   plan->moved_nodes = moved_nodes(surfaces);
-  const NodeFlags on_wall = detail::wall_nodes(mesh, surfaces);
   std::copy_if(plan->moved_nodes.begin(), plan->moved_nodes.end(),
                std::back_inserter(plan->wall_nodes),
-               [&](Index node) { return on_wall[node] != 0; });
+               [&](Index node) { return walls.is_wall[node] != 0; });
 
   const int cell_dimension = surfaces.front().dimension + 1;
   const bool moves_interior = last != VolumeMethod::none && n_elements(mesh, cell_dimension) > 0;
   detail::NodeRoles roles = given_roles(mesh, plan->moved_nodes);
-  if (moves_interior) add_unknowns(reached_corners(mesh, cell_dimension, roles, on_wall), roles);
+  const detail::NodeTies ties{walls.sliding, walls.images};
+  if (moves_interior) {
+    plan->copies = give_to_images(walls, roles);
+    add_unknowns(reached_corners(mesh, cell_dimension, roles, walls), walls, ties, roles);
+  }
   require_movable_elements(mesh, roles);
-  for (Index node = 0; node < mesh.n_nodes(); ++node)
-    if (roles.unknown[node] >= 0) plan->free_nodes.push_back(node);
+  for (Index node = 0; node < mesh.n_nodes(); ++node) {
+    if (roles.unknown[node] < 0) continue;
+    plan->free_nodes.push_back(node);
+    plan->unknown_of_free.push_back(roles.unknown[node]);
+    if (const Index first = image(walls, node); first != node)
+      plan->images.push_back({node, first});
+  }
   if (moves_interior) {
     NodeFlags is_free = free_flags(roles);
     plan->extension = std::make_unique<const detail::HarmonicExtension>(
         mesh.nodes, detail::deforming_simplices(mesh, cell_dimension, is_free), roles);
     if (last != VolumeMethod::harmonic && can_be_repaired(mesh, cell_dimension))
       plan->repair = std::make_unique<const detail::VolumeRepair>(
-          mesh, std::move(is_free), last == VolumeMethod::split ? most_splits : 0);
+          mesh, std::move(is_free), last == VolumeMethod::split ? most_splits : 0, ties);
     plan->followers = std::make_unique<const detail::Followers>(
-        make_followers(mesh, cell_dimension, roles, on_wall));
+        make_followers(mesh, cell_dimension, roles, walls));
   }
   plan_ = std::move(plan);
 }

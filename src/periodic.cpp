@@ -193,20 +193,20 @@ bool are_images(const Vec3& x, const Vec3& y, const Vec3& period) {
   return is_shifted && is_lattice_shift(x - y, period);
 }
 
-/// Points that are at least a period away from an end of the surface, along some axis: no other can
+/// Points that are at least a period away from an end of all of them, along some axis: no other can
 /// be an image.
-std::vector<Index> possible_images(const Surface& surface, const Vec3& period) {
+std::vector<Index> possible_images(std::span<const Vec3> places, const Vec3& period) {
   Eigen::AlignedBox3d box;
-  for (const Vec3& x : surface.points) box.extend(x);
+  for (const Vec3& x : places) box.extend(x);
   const double rounding = tolerance * period.maxCoeff();
   std::vector<Index> points;
-  for (Index i = 0; i < surface.n_points(); ++i) {
-    const Vec3& x = surface.points[i];
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Vec3& x = places[i];
     const Vec3 reach = (box.max() - x).cwiseMax(x - box.min());
     bool reaches_image = false;
     for (int axis = 0; axis < 3; ++axis)
       reaches_image |= period[axis] > 0 && reach[axis] >= period[axis] - 2 * rounding;
-    if (reaches_image) points.push_back(i);
+    if (reaches_image) points.push_back(static_cast<Index>(i));
   }
   return points;
 }
@@ -215,22 +215,11 @@ std::vector<Index> possible_images(const Surface& surface, const Vec3& period) {
 std::array<bool, 3> unite_equal_positions(const Surface& surface, const Vec3& period,
                                           detail::DisjointSets& classes) {
   std::array<bool, 3> is_used{};
-  Vec3 corner = surface.points.front();
-  for (const Vec3& x : surface.points) corner = corner.cwiseMin(x);
-  const std::vector<Index> points = possible_images(surface, period);
-  std::vector<std::pair<Key, Index>> keys(points.size());
-  for (unsigned grids = 0; grids < 8; ++grids) {
-    for (std::size_t i = 0; i < keys.size(); ++i)
-      keys[i] = {key_of(surface.points[points[i]], corner, period, grids), points[i]};
-    detail::parallel_sort(std::span(keys), std::less<>());
-    for (std::size_t i = 1, first = 0; i < keys.size(); ++i) {
-      if (keys[i].first != keys[first].first) first = i;
-      const Vec3 &x = surface.points[keys[i].second], &y = surface.points[keys[first].second];
-      if (!are_images(x, y, period)) continue;
-      classes.unite(keys[i].second, keys[first].second);
-      for (int axis = 0; axis < 3; ++axis)
-        is_used[axis] = is_used[axis] || std::abs(x[axis] - y[axis]) > period[axis] / 2;
-    }
+  for (const auto& [i, j] : periodic_pairs(surface.points, period)) {
+    classes.unite(i, j);
+    const Vec3 shift = surface.points[i] - surface.points[j];
+    for (int axis = 0; axis < 3; ++axis)
+      is_used[axis] = is_used[axis] || std::abs(shift[axis]) > period[axis] / 2;
   }
   return is_used;
 }
@@ -303,6 +292,26 @@ PeriodicPartners periodic_partners(const Mesh& mesh, const Surface& surface,
   }
   take_classes(classes, partners);
   return partners;
+}
+
+std::vector<std::array<Index, 2>> periodic_pairs(std::span<const Vec3> points, const Vec3& period) {
+  std::vector<std::array<Index, 2>> pairs;
+  if (points.empty()) return pairs;
+  Vec3 corner = points.front();
+  for (const Vec3& x : points) corner = corner.cwiseMin(x);
+  const std::vector<Index> possible = possible_images(points, period);
+  std::vector<std::pair<Key, Index>> keys(possible.size());
+  for (unsigned grids = 0; grids < 8; ++grids) {
+    for (std::size_t i = 0; i < keys.size(); ++i)
+      keys[i] = {key_of(points[possible[i]], corner, period, grids), possible[i]};
+    detail::parallel_sort(std::span(keys), std::less<>());
+    for (std::size_t i = 1, first = 0; i < keys.size(); ++i) {
+      if (keys[i].first != keys[first].first) first = i;
+      const Index a = keys[first].second, b = keys[i].second;
+      if (are_images(points[b], points[a], period)) pairs.push_back({b, a});
+    }
+  }
+  return pairs;
 }
 
 std::vector<Index> masters(const PeriodicPartners& partners) {

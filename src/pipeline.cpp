@@ -2,12 +2,14 @@
 #include "roughmesh/pipeline.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "roughmesh/displace.hpp"
 #include "roughmesh/move_volume.hpp"
+#include "roughmesh/walls.hpp"
 
 #include "field_ensemble.hpp"
 #include "parallel.hpp"
@@ -57,6 +59,16 @@ std::vector<Vec3> differences(std::span<const Vec3> after, std::span<const Vec3>
   return result;
 }
 
+/// Nodes of walls that follow the surfaces; empty where there are none.
+std::vector<std::uint8_t> following_nodes(const Walls& walls, std::span<const Surface> surfaces) {
+  if (walls.sliding.empty()) return {};
+  std::vector<std::uint8_t> flags(walls.is_wall.size(), 0);
+  for (const SlidingNode& each : walls.sliding) flags[each.node] = 1;
+  for (const Surface& surface : surfaces)
+    for (const Index node : surface.nodes) flags[node] = 0;
+  return flags;
+}
+
 VolumeMethod last_method(const RoughenOptions& options) {
   return options.volume == VolumeChoice::move ? VolumeMethod::split : VolumeMethod::none;
 }
@@ -89,14 +101,15 @@ class Run {
         report_(report),
         timer_(report.timings, watch),
         surfaces_(timer_.time(&Timings::surface, [&] { return select(options); })),
+        walls_(timer_.time(&Timings::volume, [&] { return make_walls(); })),
         volume_mover_(timer_.time(
             &Timings::volume,
-            [&] { return VolumeMover(mesh, surfaces_.surfaces, last_method(options)); })),
+            [&] { return VolumeMover(mesh, surfaces_.surfaces, walls_, last_method(options)); })),
         surface_mover_(timer_.time(&Timings::displace, [&] { return make_surface_mover(); })),
-        n_wall_nodes_(detail::n_moving(surfaces_, mesh, volume_mover_.wall_nodes())),
         quality_before_(timer_.time(&Timings::check, [&] { return min_quality(mesh); })),
         enclosure_(timer_.time(&Timings::check, [&] { return Enclosure(mesh); })),
         checker_(timer_.time(&Timings::check, [&] { return make_checker(); })),
+        walls_checker_(timer_.time(&Timings::check, [&] { return make_walls_checker(); })),
         fields_(surfaces_, options, timer_),
         targets_(timer_.time(&Timings::audit, [&] { return expect_sq(surfaces_, fields_); })) {
     report_fields();
@@ -140,14 +153,30 @@ class Run {
     return rough;
   }
 
-  SurfaceMover make_surface_mover() const {
-    return {surfaces_.surfaces, detail::edge_options(surfaces_),
-            NodeConstraints{.fixed = detail::fixed_nodes(surfaces_, mesh_), .sliding = {}}};
+  /// Something behind them follows.
+  bool walls_can_slide() const {
+    return report_.request.volume == VolumeChoice::move &&
+           n_elements(mesh_, surfaces_.surfaces.front().dimension + 1) > 0;
   }
 
+  Walls make_walls() const {
+    return find_walls(mesh_, surfaces_.surfaces,
+                      {.can_slide = walls_can_slide(),
+                       .moving = detail::moving_nodes(surfaces_, mesh_),
+                       .period = detail::period_of(surfaces_)});
+  }
+
+  SurfaceMover make_surface_mover() const {
+    return {surfaces_.surfaces, detail::edge_options(surfaces_),
+            NodeConstraints{.fixed = detail::fixed_nodes(surfaces_, mesh_),
+                            .sliding = sliding_on_surfaces(walls_, surfaces_.surfaces)}};
+  }
+
+  Index n_torn() const { return static_cast<Index>(walls_.torn.size()); }
+
   SurfaceChecker make_checker() const {
-    detail::warn_of_walls(report_, n_wall_nodes_);
-    SurfaceChecker checker(mesh_, surfaces_.surfaces);
+    detail::warn_of_walls(report_, n_torn(), walls_can_slide());
+    SurfaceChecker checker(mesh_, surfaces_.surfaces, following_nodes(walls_, surfaces_.surfaces));
     for (std::size_t s = 0; s < surfaces_.surfaces.size(); ++s) {
       const Roughness& request = surfaces_.plans[s].request;
       const double height = report_.surfaces[s].resolution.expected_max_height * request.rms;
@@ -155,6 +184,11 @@ class Run {
         detail::warn_of_thin_wall(report_, surfaces_.surfaces[s], request, *wall);
     }
     return checker;
+  }
+
+  std::optional<SurfaceChecker> make_walls_checker() const {
+    if (walls_.sliding.empty()) return std::nullopt;
+    return SurfaceChecker(mesh_, surfaces_.surfaces);
   }
 
   void report_fields() const {
@@ -183,8 +217,21 @@ class Run {
     });
     if (report_.realizations.empty())
       detail::warn_of_input_intersections(report_, rough_.surface_check);
+    refuse_surface();
+  }
+
+  /// The surface once more, with the walls that followed it.
+  void accept_walls() {
+    if (!walls_checker_ || !rough_.surface_check.valid()) return;
+    rough_.surface_check = timer_.time(&Timings::check, [&] {
+      return walls_checker_->check(std::span(rough_.mesh.nodes).first(mesh_.nodes.size()));
+    });
+    refuse_surface();
+  }
+
+  void refuse_surface() {
     detail::refuse_invalid(rough_.surface_check, rough_.realization,
-                           detail::remedy(surfaces_.fields, n_wall_nodes_,
+                           detail::remedy(surfaces_.fields, n_torn(),
                                           detail::lower_rms(rough_.surface_check, report_.request)),
                            report_);
   }
@@ -200,7 +247,8 @@ class Run {
     rough_.check =
         timer_.time(&Timings::check, [&] { return check_mesh(smooth, moved.nodes, enclosure_); });
     detail::refuse_invalid(rough_.check, rough_.realization,
-                           detail::remedy(surfaces_.fields, n_wall_nodes_), report_);
+                           detail::remedy(surfaces_.fields, n_torn()), report_);
+    accept_walls();
     if (report_.realizations.empty()) detail::warn_of_curved_elements(report_, rough_.check);
     if (moved.split) detail::warn_of_split(report_, rough_.realization, mesh_, *moved.split);
     if (moved.method > VolumeMethod::harmonic)
@@ -229,12 +277,13 @@ class Run {
   Report& report_;
   detail::StageTimer timer_;
   const RoughSurfaces surfaces_;
+  const Walls walls_;
   const VolumeMover volume_mover_;
   const SurfaceMover surface_mover_;
-  const Index n_wall_nodes_;  // that move
   const double quality_before_;
   const Enclosure enclosure_;
-  const SurfaceChecker checker_;
+  const SurfaceChecker checker_;                       // of what does not follow
+  const std::optional<SurfaceChecker> walls_checker_;  // of all, where walls slide
   const FieldEnsemble fields_;
   const std::vector<SqTarget> targets_;  // one for each surface
   RoughMesh rough_;                      // the latest

@@ -36,6 +36,15 @@ bool grow(const std::vector<Simplex>& simplices, NodeFlags& marked) {
   return grew;
 }
 
+// Nodes that move alike, if one of them is marked.
+void mark_images(const NodeTies& ties, NodeFlags& marked) {
+  const auto n = static_cast<Index>(ties.images.size());
+  for (Index node = 0; node < n; ++node)
+    if (marked[node] != 0) marked[ties.images[node]] = 1;
+  for (Index node = 0; node < n; ++node)
+    if (marked[ties.images[node]] != 0) marked[node] = 1;
+}
+
 bool is_better(const MeshCheck& a, const MeshCheck& b) {
   return a.inverted_elements != b.inverted_elements ? a.inverted_elements < b.inverted_elements
                                                     : a.min_quality > b.min_quality;
@@ -43,13 +52,15 @@ bool is_better(const MeshCheck& a, const MeshCheck& b) {
 
 }  // namespace
 
-VolumeRepair::VolumeRepair(const Mesh& mesh, NodeFlags is_free, int n_splits)
-    : VolumeRepair(mesh, std::move(is_free), n_splits, mesh.n_nodes()) {}
+VolumeRepair::VolumeRepair(const Mesh& mesh, NodeFlags is_free, int n_splits, NodeTies ties)
+    : VolumeRepair(mesh, std::move(is_free), n_splits, mesh.n_nodes(), std::move(ties)) {}
 
-VolumeRepair::VolumeRepair(const Mesh& mesh, NodeFlags is_free, int n_splits, Index first_new_node)
+VolumeRepair::VolumeRepair(const Mesh& mesh, NodeFlags is_free, int n_splits, Index first_new_node,
+                           NodeTies ties)
     : mesh_(mesh),
       simplices_(deforming_simplices(mesh, dimension(mesh), is_free)),
       is_free_(std::move(is_free)),
+      ties_(std::move(ties)),
       n_splits_(n_splits),
       first_new_node_(first_new_node) {
   if (dimension(mesh) == 2) plane_normal_ = fit_plane(mesh).normal;
@@ -59,6 +70,7 @@ NodeFlags VolumeRepair::free_near_poor(const std::vector<Vec3>& positions, int l
   NodeFlags near = nodes_of_poor_elements(mesh_, positions, limit);
   for (int layer = 0; layer < layers; ++layer)
     if (!grow(simplices_, near)) break;
+  mark_images(ties_, near);
   for (std::size_t node = 0; node < near.size(); ++node)
     near[node] = near[node] != 0 && is_free_[node] != 0;
   return near;
@@ -77,7 +89,7 @@ MeshCheck VolumeRepair::untangle_near_poor(std::vector<Vec3>& positions) const {
     const NodeFlags is_free = free_near_poor(positions, layers);
     if (std::find(is_free.begin(), is_free.end(), 1) == is_free.end()) break;
     std::vector<Vec3> candidate = positions;
-    untangle({mesh_.nodes, simplices_, plane_normal_, first_new_node_}, is_free, candidate);
+    untangle({mesh_.nodes, simplices_, plane_normal_, first_new_node_, ties_}, is_free, candidate);
     const MeshCheck check = check_mesh(mesh_, candidate);
     if (is_better(check, best)) {
       best = check;
@@ -96,7 +108,7 @@ std::optional<MovedVolume> VolumeRepair::split_around(const NodeFlags& marked,
   auto mesh = std::make_shared<const Mesh>(std::move(split->mesh));
   NodeFlags is_free = is_free_;
   is_free.resize(mesh->nodes.size(), 1);
-  const VolumeRepair repair(*mesh, std::move(is_free), n_splits_ - 1, first_new_node_);
+  const VolumeRepair repair(*mesh, std::move(is_free), n_splits_ - 1, first_new_node_, ties_);
   MovedVolume result = repair.mend(std::move(split->positions));
   if (!result.split) result.split = std::move(mesh);
   if (!check_mesh(*result.split, result.nodes).valid()) return std::nullopt;

@@ -9,6 +9,7 @@
 #include "roughmesh/move_volume.hpp"
 
 #include "deforming.hpp"
+#include "tied_nodes.hpp"
 
 namespace roughmesh::detail {
 
@@ -18,13 +19,15 @@ class VolumeRepair {
   /// @param mesh      the input, of volumes or planar; has to outlive this
   /// @param is_free   per node: it may be moved
   /// @param n_splits  how often edges may be split
-  VolumeRepair(const Mesh& mesh, NodeFlags is_free, int n_splits);
+  /// @param ties      of free nodes; all that move alike are free
+  VolumeRepair(const Mesh& mesh, NodeFlags is_free, int n_splits, NodeTies ties = {});
 
   /// @param positions  of the harmonic extension
   MovedVolume mend(std::vector<Vec3> positions) const;
 
  private:
-  VolumeRepair(const Mesh& mesh, NodeFlags is_free, int n_splits, Index first_new_node);
+  VolumeRepair(const Mesh& mesh, NodeFlags is_free, int n_splits, Index first_new_node,
+               NodeTies ties);
 
   bool needs_nothing(const MeshCheck& check) const;
   MeshCheck untangle_near_poor(std::vector<Vec3>& positions) const;
@@ -37,6 +40,7 @@ class VolumeRepair {
   const Mesh& mesh_;
   std::vector<Simplex> simplices_;
   NodeFlags is_free_;
+  NodeTies ties_;
   int n_splits_ = 0;
   Index first_new_node_ = 0;  // that no input mesh had
   std::optional<Vec3> plane_normal_;

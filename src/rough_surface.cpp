@@ -344,14 +344,23 @@ Correlation correlation_of(const SurfacePlan& surface, std::span<const FieldPlan
   return fields[surface.field].correlation.among(surface.field_point);
 }
 
-Index n_moving(const RoughSurfaces& rough, const Mesh& mesh, std::span<const Index> nodes) {
-  std::vector<bool> moves(mesh.nodes.size(), false);
+std::vector<std::uint8_t> moving_nodes(const RoughSurfaces& rough, const Mesh& mesh) {
+  std::vector<std::uint8_t> moves(mesh.nodes.size(), 0);
   for (std::size_t s = 0; s < rough.surfaces.size(); ++s)
     for (std::size_t i = 0; i < rough.surfaces[s].nodes.size(); ++i)
       if (rough.plans[s].weights[rough.surfaces[s].point_of_node[i]] > 0)
-        moves[rough.surfaces[s].nodes[i]] = true;
-  return static_cast<Index>(
-      std::count_if(nodes.begin(), nodes.end(), [&](Index node) { return moves[node]; }));
+        moves[rough.surfaces[s].nodes[i]] = 1;
+  for (const Index node : fixed_nodes(rough, mesh)) moves[node] = 0;
+  return moves;
+}
+
+std::optional<Vec3> period_of(const RoughSurfaces& rough) {
+  for (const SurfacePlan& plan : rough.plans) {
+    const std::vector<double>& p = plan.request.period;
+    if (plan.request.distance && is_periodic(*plan.request.distance) && p.size() == 3)
+      return Vec3(p[0], p[1], p[2]);
+  }
+  return std::nullopt;
 }
 
 std::vector<double> heights_of(const SurfacePlan& surface, std::span<const double> field_heights) {

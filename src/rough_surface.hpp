@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -66,8 +67,11 @@ RoughSurfaces prepare_surface(const Mesh& mesh, const Surface& surface, const Ro
 /// Correlation between the points of one surface.
 Correlation correlation_of(const SurfacePlan& surface, std::span<const FieldPlan> fields);
 
-/// How many of these nodes of the mesh the roughness moves: of weight above 0 on some surface.
-Index n_moving(const RoughSurfaces& rough, const Mesh& mesh, std::span<const Index> nodes);
+/// n_nodes flags: nodes that the roughness moves, of weight above 0 on some surface and not fixed.
+std::vector<std::uint8_t> moving_nodes(const RoughSurfaces& rough, const Mesh& mesh);
+
+/// Along each axis the period of the surfaces that have a periodic distance, if any.
+std::optional<Vec3> period_of(const RoughSurfaces& rough);
 
 /// Heights z_i = m_i Rq d_i of the points of one surface (docs/math.md, eq. 3 and 43).
 /// @param field_heights  d at the points of its field

@@ -55,15 +55,25 @@ std::vector<Edge> edges_to_keep(const Mesh& mesh) {
   return edges;
 }
 
+// A new node between two nodes with images would have none.
+NodeFlags linked_nodes(const Mesh& mesh) {
+  NodeFlags linked(mesh.nodes.size(), 0);
+  for (const PeriodicLink& link : mesh.periodic_links)
+    for (const auto& [slave, master] : link.nodes) linked[slave] = linked[master] = 1;
+  return linked;
+}
+
 std::vector<Edge> edges_to_split(const Mesh& mesh, const NodeFlags& is_free,
                                  const NodeFlags& marked) {
   std::vector<Edge> edges;
+  const NodeFlags linked = linked_nodes(mesh);
   for (const ElementBlock& block : mesh.blocks)
     for (Index e = 0; can_be_split(block) && e < block.size(); ++e) {
       const Tetrahedron t = tetrahedron(block, e);
       if (!any_of(t, marked)) continue;
       for (const auto& [a, b] : edges_of_tetrahedron)
-        if (!is_free[t[a]] && !is_free[t[b]]) edges.push_back(make_edge(t[a], t[b]));
+        if (!is_free[t[a]] && !is_free[t[b]] && (!linked[t[a]] || !linked[t[b]]))
+          edges.push_back(make_edge(t[a], t[b]));
     }
   sort_once(edges);
   const std::vector<Edge> kept = edges_to_keep(mesh);

@@ -21,9 +21,9 @@ struct SplitMesh {
 };
 
 /// Splits, of the tetrahedra of order 1 with a marked node, every edge that joins two nodes that
-/// are not free and lies on no element but tetrahedra and on no boundary; then, into four, those
-/// that still have no free node. Elements keep entity and groups; one part keeps the number, the
-/// others get new ones.
+/// are not free, not both linked to images, and lies on no element but tetrahedra and on no
+/// boundary; then, into four, those that still have no free node. Elements keep entity and groups;
+/// one part keeps the number, the others get new ones.
 /// @param marked     per node: where it is needed
 /// @param positions  of the moved nodes
 /// @return           nothing where there is nothing to split

@@ -10,6 +10,7 @@
 #include "plane.hpp"
 #include "surface_faces.hpp"
 #include "volume_faces.hpp"
+#include "wall_faces.hpp"
 
 namespace roughmesh::detail {
 namespace {
@@ -124,7 +125,11 @@ struct Choice {
 };
 
 Choice everything(const Candidates& candidates) {
-  if (n_elements(candidates.mesh, candidates.dimension) > 0)
+  const Mesh& mesh = candidates.mesh;
+  if (std::any_of(mesh.blocks.begin(), mesh.blocks.end(), [&](const ElementBlock& block) {
+        return block.size() > 0 && dimension(block.type.shape) == candidates.dimension &&
+               !is_between_partitions(mesh, block);
+      }))
     return {Choice::Kind::all_elements, candidates.dimension, {}, {"all"}};
   if (dimension(candidates.mesh) == lines_dimension)
     throw InputError(fmt::format("a mesh of lines only: {}; give a planar one",
@@ -163,9 +168,9 @@ Choice make_choice(const Candidates& candidates, std::span<const std::string> te
   return choice;
 }
 
-bool is_chosen(const ElementBlock& block, const Choice& choice) {
+bool is_chosen(const Mesh& mesh, const ElementBlock& block, const Choice& choice) {
   if (block.size() == 0 || dimension(block.type.shape) != choice.dimension) return false;
-  return choice.kind == Choice::Kind::all_elements ||
+  return (choice.kind == Choice::Kind::all_elements && !is_between_partitions(mesh, block)) ||
          std::any_of(choice.tags.begin(), choice.tags.end(),
                      [&](Tag tag) { return contains(block.physical_groups, tag); });
 }
@@ -183,7 +188,7 @@ void add_element(const ElementType& type, std::span<const Index> nodes, Tag tag,
 void reserve(const Mesh& mesh, const Choice& choice, Faces& faces) {
   std::size_t n_faces = 0, n_corners = 0;
   for (const ElementBlock& block : mesh.blocks) {
-    if (!is_chosen(block, choice)) continue;
+    if (!is_chosen(mesh, block, choice)) continue;
     for (const std::vector<int>& facet : facets(block.type)) {
       n_faces += block.tags.size();
       n_corners += block.tags.size() * facet.size();
@@ -196,7 +201,7 @@ void add_elements(const Mesh& mesh, const Choice& choice, Faces& faces) {
   reserve(mesh, choice, faces);
   Index order = 0;
   for (const ElementBlock& block : mesh.blocks) {
-    if (!is_chosen(block, choice)) continue;
+    if (!is_chosen(mesh, block, choice)) continue;
     require_movable_order(block.type, block.tags.front());
     for (Index e = 0; e < block.size(); ++e)
       add_element(block.type, block.element(e), block.tags[e], order++, faces);

@@ -189,13 +189,15 @@ void warn_of_split(Report& report, std::uint64_t realization, const Mesh& mesh, 
       realization, split.nodes.size() - mesh.nodes.size(), n_elements(split) - n_elements(mesh)));
 }
 
-void warn_of_walls(Report& report, Index n_nodes) {
+void warn_of_walls(Report& report, Index n_nodes, bool can_slide) {
   if (n_nodes > 0)
     report.warnings.push_back(fmt::format(
-        "{} nodes of the rough surface lie on faces that are not roughened; they move along the "
+        "{} nodes of the rough surface lie on faces that are not roughened{}: they move along the "
         "normals of the rough surface while the other nodes of those faces stay, so elements there "
         "invert first; --fade lets the roughness end before",
-        n_nodes));
+        n_nodes,
+        can_slide ? " and cannot slide (they are curved, or go on where the rough surface ends)"
+                  : ""));
 }
 
 void warn_of_thin_wall(Report& report, const Surface& surface, const Roughness& request,

@@ -42,7 +42,8 @@ void warn_of_curved_elements(Report& report, const MeshCheck& check);
 void warn_of_split(Report& report, std::uint64_t realization, const Mesh& mesh, const Mesh& split);
 
 /// Nodes of the surfaces that move although they lie on faces that stay.
-void warn_of_walls(Report& report, Index n_nodes);
+/// @param can_slide  other faces would have followed
+void warn_of_walls(Report& report, Index n_nodes, bool can_slide);
 
 /// A wall or gap that heights to be expected may close.
 void warn_of_thin_wall(Report& report, const Surface& surface, const Roughness& request,

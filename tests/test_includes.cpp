@@ -13,10 +13,10 @@
 namespace {
 
 const std::vector<std::string> order = {
-    "error",       "mesh",        "mesh_io",         "cad",      "surface",     "mask",
-    "periodic",    "curve",       "autocorrelation", "distance", "correlation", "resolution",
-    "white_noise", "field",       "displace",        "check",    "move_volume", "statistics",
-    "options",     "field_model", "report",          "pipeline"};
+    "error",       "mesh",    "mesh_io",         "cad",      "surface",     "mask",
+    "periodic",    "curve",   "autocorrelation", "distance", "correlation", "resolution",
+    "white_noise", "field",   "displace",        "walls",    "check",       "move_volume",
+    "statistics",  "options", "field_model",     "report",   "pipeline"};
 
 std::filesystem::path source_dir() { return ROUGHMESH_SOURCE_DIR; }
 

@@ -135,8 +135,10 @@ struct ThinWall {
 class SurfaceChecker {
  public:
   /// @param surfaces  one or more of this mesh, of one dimension
+  /// @param left_out  n_nodes flags: faces with such a node are not looked at; empty: all are
   /// @throws InputError  no surface
-  SurfaceChecker(const Mesh& mesh, std::span<const Surface> surfaces);
+  SurfaceChecker(const Mesh& mesh, std::span<const Surface> surfaces,
+                 std::span<const std::uint8_t> left_out = {});
   ~SurfaceChecker();
   SurfaceChecker(SurfaceChecker&&) noexcept;
   SurfaceChecker& operator=(SurfaceChecker&&) noexcept;

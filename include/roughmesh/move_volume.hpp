@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "roughmesh/surface.hpp"
+#include "roughmesh/walls.hpp"
 
 namespace roughmesh {
 
@@ -38,9 +39,9 @@ struct MovedVolume {
 /// that inverts elements or leaves them poor, nodes around are moved by the foldover-free map (eq.
 /// 50 to 52); where an inverted element has no node that may move, edges are split. Other inner
 /// nodes of elements of order 2 follow the nodes of their edges and faces (eq. 38), which keeps a
-/// straight edge straight; that no curved element is inverted is not checked. Nodes of the domain's
-/// boundary and of every unselected face stay where they are, as do nodes that these separate from
-/// the surfaces. A mesh without such elements moves its surfaces only.
+/// straight edge straight; that no curved element is inverted is not checked. Nodes of walls slide
+/// in their planes or stay, as find_walls says, nodes that move alike do so, and what walls that
+/// stay separate from the surfaces stays. A mesh without such elements moves its surfaces only.
 class VolumeMover {
  public:
   /// @param mesh      has to outlive the mover
@@ -50,7 +51,12 @@ class VolumeMover {
   ///                     of order above 2 has a node that would move
   VolumeMover(const Mesh& mesh, std::span<const Surface> surfaces,
               VolumeMethod last = VolumeMethod::split);
+  /// @param walls  of these surfaces; without, all walls stay
+  VolumeMover(const Mesh& mesh, std::span<const Surface> surfaces, const Walls& walls,
+              VolumeMethod last = VolumeMethod::split);
   VolumeMover(Mesh&& mesh, std::span<const Surface> surfaces,
+              VolumeMethod last = VolumeMethod::split) = delete;
+  VolumeMover(Mesh&& mesh, std::span<const Surface> surfaces, const Walls& walls,
               VolumeMethod last = VolumeMethod::split) = delete;
   ~VolumeMover();
   VolumeMover(VolumeMover&&) noexcept;
@@ -59,8 +65,7 @@ class VolumeMover {
   /// Whether there are elements that can follow.
   bool moves_interior() const;
 
-  /// Nodes of the surfaces that also lie on a face that is in none of them and stays, ascending:
-  /// the rough surface meets a wall there.
+  /// Nodes of the surfaces that also lie on a wall, ascending.
   const std::vector<Index>& wall_nodes() const;
 
   /// @param displacements  one vector per node of moved_nodes(surfaces), in its order

@@ -2,6 +2,7 @@
 // Points of a surface that are images of each other and carry one height.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -38,6 +39,11 @@ struct PeriodicPartners {
 ///                     axes, one that no two points differ by, or not that of the links
 PeriodicPartners periodic_partners(const Mesh& mesh, const Surface& surface,
                                    const std::optional<Vec3>& period = {});
+
+/// Pairs of points that differ by whole periods, to 1e-9 of the largest, enough of them to join all
+/// images of each point. Sorts: n log n.
+/// @param period  0 along axes that are not periodic; not 0 along all
+std::vector<std::array<Index, 2>> periodic_pairs(std::span<const Vec3> points, const Vec3& period);
 
 std::vector<Index> masters(const PeriodicPartners& partners);  ///< ascending points
 
