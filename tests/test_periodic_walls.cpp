@@ -208,7 +208,7 @@ RoughenOptions slab_options(double rms, double length) {
 
 }  // namespace
 
-// Rq/h = 0.7 and l = 1.77 h, where every slab with walls that stay has inverted elements.
+// Rq/h = 0.7 and l = 1.77 h.
 TEST(PeriodicWalls, TenRoughSlabsAreValidWithPlaneWalls) {
   if (!test::has_gmsh()) GTEST_SKIP() << "no gmsh";
   const Mesh mesh = gmsh_slab("-format msh41");

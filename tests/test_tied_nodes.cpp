@@ -45,7 +45,7 @@ TEST(TiedNodes, ShiftsKeepPlanesAndImages) {
   EXPECT_TRUE(tied.shifts(tied.start()).isZero(0));
   const Eigen::VectorXd shifts = tied.shifts(random_vector(6, 2));
   for (const SlidingNode& each : ties().sliding)
-    EXPECT_NEAR(shifts.segment<3>(3 * each.node).dot(each.normal), 0, 1e-15);
+    EXPECT_NEAR(shifts.segment<3>(3 * Eigen::Index{each.node}).dot(each.normal), 0, 1e-15);
   EXPECT_EQ(shifts.segment<3>(0), shifts.segment<3>(9));
   EXPECT_GT(shifts.segment<3>(3).norm(), 0.01);
   EXPECT_GT(shifts.segment<3>(6).norm(), 0.01);
