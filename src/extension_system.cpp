@@ -62,7 +62,7 @@ std::vector<Vec3> ExtensionSystem::extend(std::span<const Vec3> given) const {
         load[i] -= entry.value() * given[entry.col()];
   });
   const SolveOptions options;
-  Solution solution = solve(stiffness_, load, options);
+  Solution solution = solve(stiffness_, load, {}, options);
   require_convergence(solution, options.tolerance);
   return std::move(solution.values);
 }
