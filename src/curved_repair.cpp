@@ -20,6 +20,12 @@ namespace {
 constexpr double enough = 0.85;
 constexpr double share = 0.995;
 constexpr int rounds_of_poor_only = 3;  // then their neighbours move as well
+constexpr int rounds_of_quality = 6;    // then only what is inverted is worth more of them
+
+void make_unique(std::vector<Index>& numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+}
 
 // -1/beta log sum exp(-beta (c_k + g_k . y)) - |y|^2 / 1000, smooth and concave: below the least by
 // log(n) / beta at most, and it stays where nothing is to be gained.
@@ -97,25 +103,27 @@ ElementOrientation CurvedRepair::orientation(const ElementOfMesh& cell) const {
   return result;
 }
 
-bool CurvedRepair::is_poor(const ElementOfMesh& cell, std::span<const Vec3> positions) const {
+bool CurvedRepair::has(Defect defect, const ElementOfMesh& cell,
+                       std::span<const Vec3> positions) const {
   const ElementOrientation orientation = this->orientation(cell);
   const auto at = [&](std::span<const Vec3> where) {
     return curved_quality(cell.type(mesh_), cell.nodes(mesh_), where, orientation);
   };
   const auto after = at(positions);
-  if (!after || (after->is_positive && after->value >= enough)) return false;
+  if (!after) return false;
+  if (after->is_positive && (defect == Defect::inverted || after->value >= enough)) return false;
   const auto before = at(mesh_.nodes);
   if (!before || !before->is_positive) return false;
   return !after->is_positive || after->value < share * before->value;
 }
 
 std::vector<Index> CurvedRepair::poor_cells(std::span<const Index> among,
-                                            std::span<const Vec3> positions) const {
+                                            std::span<const Vec3> positions, Defect defect) const {
   constexpr std::size_t grain = 1024;
   std::vector<std::uint8_t> flags(among.size(), 0);
   parallel_for(among.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      flags[i] = is_poor(cells_[static_cast<std::size_t>(among[i])], positions);
+      flags[i] = has(defect, cells_[static_cast<std::size_t>(among[i])], positions);
   });
   std::vector<Index> poor;
   for (std::size_t i = 0; i < among.size(); ++i)
@@ -200,34 +208,35 @@ void CurvedRepair::improve(Index node, std::span<const Index> around,
   positions[node] = start;
 }
 
+// Sorted, each once.
+std::vector<Index> CurvedRepair::free_nodes_of(std::span<const Index> cells) const {
+  std::vector<Index> nodes;
+  for (const Index c : cells)
+    for (const Index node : cells_[static_cast<std::size_t>(c)].nodes(mesh_))
+      if (is_free_[node] != 0) nodes.push_back(node);
+  make_unique(nodes);
+  return nodes;
+}
+
 void CurvedRepair::mend(std::span<Vec3> positions) const {
-  std::vector<Index> among(cells_.size());
-  std::iota(among.begin(), among.end(), 0);
-  std::vector<Index> poor = poor_cells(among, positions);
+  std::vector<Index> all(cells_.size());
+  std::iota(all.begin(), all.end(), 0);
+  std::vector<Index> poor = poor_cells(all, positions, Defect::poor);
   if (poor.empty()) return;
   const std::vector<std::vector<Index>> cells_at = cells_at_free_nodes();
-  const auto free_nodes_of = [&](std::span<const Index> cells) {
-    std::vector<Index> nodes;
-    for (const Index c : cells)
-      for (const Index node : cells_[static_cast<std::size_t>(c)].nodes(mesh_))
-        if (is_free_[node] != 0) nodes.push_back(node);
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    return nodes;
-  };
   const auto cells_around = [&](std::span<const Index> nodes) {
     std::vector<Index> cells;
     for (const Index node : nodes)
       cells.insert(cells.end(), cells_at[node].begin(), cells_at[node].end());
-    std::sort(cells.begin(), cells.end());
-    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    make_unique(cells);
     return cells;
   };
   for (int round = 0; round < most_rounds && !poor.empty(); ++round) {
     std::vector<Index> nodes = free_nodes_of(poor);
     if (round >= rounds_of_poor_only) nodes = free_nodes_of(cells_around(nodes));
     for (const Index node : nodes) improve(node, cells_at[node], positions);
-    poor = poor_cells(cells_around(nodes), positions);
+    poor = poor_cells(cells_around(nodes), positions,
+                      round + 1 < rounds_of_quality ? Defect::poor : Defect::inverted);
   }
 }
 

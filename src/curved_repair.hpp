@@ -2,6 +2,7 @@
 // Curved elements that are inverted, or nearly so, although their corners are right.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -34,13 +35,15 @@ class CurvedRepair {
   /// inverted in the input are none of its business. The same bits on any number of threads.
   void mend(std::span<Vec3> positions) const;
 
-  static constexpr int most_rounds = 6;
+  static constexpr int most_rounds = 20;
 
  private:
   ElementOrientation orientation(const ElementOfMesh& cell) const;
-  bool is_poor(const ElementOfMesh& cell, std::span<const Vec3> positions) const;
-  std::vector<Index> poor_cells(std::span<const Index> among,
-                                std::span<const Vec3> positions) const;
+  enum class Defect : std::uint8_t { poor, inverted };
+  bool has(Defect defect, const ElementOfMesh& cell, std::span<const Vec3> positions) const;
+  std::vector<Index> poor_cells(std::span<const Index> among, std::span<const Vec3> positions,
+                                Defect defect) const;
+  std::vector<Index> free_nodes_of(std::span<const Index> cells) const;
   std::vector<std::vector<Index>> cells_at_free_nodes() const;
   std::vector<double> values(const ElementOfMesh& cell, std::span<const Vec3> positions) const;
   double least_quality(std::span<const Index> cells, std::span<const Vec3> positions) const;
