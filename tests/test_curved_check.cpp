@@ -158,7 +158,8 @@ TEST(CurvedCheck, ElementsOfEveryFormatAreStraight) {
       for (ElementBlock& each : swapped.blocks)
         if (each.type == block.type)
           for (Index e = 0; e < each.size(); ++e) {
-            const auto end = each.nodes.begin() + (e + 1) * each.type.n_nodes;
+            const auto end =
+                each.nodes.begin() + static_cast<std::ptrdiff_t>(e + 1) * each.type.n_nodes;
             std::iter_swap(end - 1, end - 2);
           }
       EXPECT_LT(min_quality(swapped), 0) << extension;

@@ -65,6 +65,7 @@ void keep_straight(const Mesh& mesh, const Surface& surface, std::vector<Vec3>& 
       const auto nodes = block.element(e);
       if (at.count(nodes[0]) == 0 || at.count(nodes.back()) == 0) continue;
       std::vector<Vec3> of_element;
+      of_element.reserve(nodes.size());
       for (const Index node : nodes) of_element.push_back(told[at.at(node)]);
       for (const detail::FollowingNode& following : detail::following_nodes(block.type)) {
         Vec3 sum = Vec3::Zero();
