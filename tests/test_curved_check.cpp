@@ -7,6 +7,7 @@
 #include "roughmesh/check.hpp"
 #include "roughmesh/mesh_io.hpp"
 
+#include "curved_quality.hpp"
 #include "support/curved.hpp"
 #include "support/files.hpp"
 #include "support/planar.hpp"
@@ -125,6 +126,14 @@ TEST(CurvedCheck, QualityOfStraightAndOfSlidElements) {
        {ElementShape::tetrahedron, ElementShape::hexahedron, ElementShape::prism})
     for (const bool complete : {false, true})
       EXPECT_NEAR(min_quality(box(shape, complete)), min_quality(test::cell_box(shape, 2)), 1e-14);
+  for (const int n : {8, 9}) {  // whose determinant is linear, smallest at two corners
+    const ElementType type{ElementShape::quadrangle, 2, n};
+    Mesh trapezoid = test::single_element(type.shape, {{0, 0, 0}, {3, 0, 0}, {2, 1, 0}, {1, 1, 0}});
+    trapezoid = test::second_order(trapezoid, n == 9);
+    const auto quality = detail::curved_quality(type, trapezoid.blocks[0].nodes, trapezoid.nodes,
+                                                {.sign = 1, .normal = Vec3::UnitZ()});
+    EXPECT_NEAR(quality.value().value, 1, 1e-14);
+  }
   Mesh triangle = test::single_curved({ElementShape::triangle, 2, 6});
   for (const double s : {0.3, 0.4, 0.55}) {
     triangle.nodes[3] = s * Vec3::UnitX();

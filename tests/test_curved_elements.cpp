@@ -109,14 +109,20 @@ double energy(const Mesh& mesh, const std::vector<Vec3>& w) {
   return total;
 }
 
+/// Layers of a box of different heights, so that its elements are affine, but not equal.
+Mesh graded_box(ElementShape shape, int divisions) {
+  Mesh mesh = test::cell_box(shape, divisions);
+  for (Vec3& x : mesh.nodes) x.z() *= (1 + x.z()) / 2;
+  return mesh;
+}
+
 std::vector<Mesh> affine_meshes() {
   std::vector<Mesh> meshes;
   for (const bool complete : {false, true}) {
     for (const ElementShape shape :
          {ElementShape::tetrahedron, ElementShape::hexahedron, ElementShape::prism})
-      meshes.push_back(test::second_order(test::cell_box(shape, 2), complete));
-    Mesh strip = test::strip(6, 4, 3);
-    meshes.push_back(test::second_order(strip, complete));
+      meshes.push_back(test::second_order(graded_box(shape, 2), complete));
+    meshes.push_back(test::second_order(test::strip(6, 4, 3, 0.5), complete));
   }
   Eigen::Affine3d skew = Eigen::Affine3d::Identity();
   skew.linear() << 1, 0.3, 0, 0.1, 0.8, 0, 0, 0, 1.2;
@@ -178,6 +184,36 @@ TEST(QuadraticExtension, TheOffsetMinimizesTheWeightedEnergy) {
     EXPECT_GT(ew, 1);
     // Coefficients of the quadrature have 16 digits, the solution 12.
     EXPECT_NEAR(energy(mesh, sum), ew + ev, 1e-10 * (ew + ev)) << name(mesh.blocks.back().type);
+  }
+}
+
+// What the mover adds to straight edges is that minimum: no other offset of nodes that may move has
+// less energy.
+TEST(CurvedElements, OffsetsMinimizeTheWeightedEnergy) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> uniform(-0.01, 0.01);
+  for (const ElementShape shape : {ElementShape::tetrahedron, ElementShape::hexahedron}) {
+    const Mesh mesh = test::second_order(graded_box(shape, 4), true);
+    const Surface surface = select_surface(mesh, {.groups = {"middle"}});
+    const std::vector<Vec3> moved = VolumeMover(mesh, test::only(surface), VolumeMethod::harmonic)
+                                        .move(bulges(mesh, surface, 0.05))
+                                        .nodes;
+    const auto is_corner = corners(mesh);
+    std::vector<Vec3> w(mesh.nodes.size(), Vec3::Zero()), v = w, sum = w;
+    for (std::size_t i = 0; i < w.size(); ++i) {
+      const Vec3& x = mesh.nodes[i];
+      w[i] = moved[i] - x;  // corners stay, so that all of it is offset
+      const bool is_free = !is_corner[i] && x.minCoeff() > 1e-9 && x.maxCoeff() < 1 - 1e-9 &&
+                           !std::binary_search(surface.nodes.begin(), surface.nodes.end(), i);
+      if (is_free) v[i] = Vec3(uniform(random), uniform(random), uniform(random));
+      sum[i] = w[i] + v[i];
+      if (is_corner[i]) {
+        EXPECT_EQ(w[i], Vec3::Zero());
+      }
+    }
+    const double ew = energy(mesh, w), ev = energy(mesh, v);
+    EXPECT_GT(ew, 0.01);
+    EXPECT_NEAR(energy(mesh, sum), ew + ev, 1e-10 * (ew + ev));
   }
 }
 
