@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A rough sphere in a box of curved tetrahedra: what spreading the offset of mid-side nodes into the
-// volume (docs/math.md, eq. 62) is worth, and what it costs. Rq is in mean edges h between corners
-// of the sphere, Gaussian correlation with l = 1.77 h. The value is the least Jacobian over that of
-// the straight element (eq. 61); in the column "chord" only the surface is curved.
+// A rough sphere in a box of curved tetrahedra: what spreading the offset of mid-side nodes into
+// the volume (docs/math.md, eq. 62) is worth, and what it costs. Rq is in mean edges h between
+// corners of the sphere, Gaussian correlation with l = 1.77 h. The value is the least Jacobian over
+// that of the straight element (eq. 61); in the column "chord" only the surface is curved.
 //
 //     bench_curved MESH... [--seeds N]     of sphere_in_box.geo with gmsh -order 2
 #include <algorithm>
