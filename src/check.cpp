@@ -14,6 +14,7 @@
 #include "roughmesh/surface.hpp"
 
 #include "corners.hpp"
+#include "curved_quality.hpp"
 #include "messages.hpp"
 #include "parallel.hpp"
 #include "plane.hpp"
@@ -113,6 +114,17 @@ struct BlockView {
   std::array<CornerJacobians, 2> jacobians(Index element) const {
     return dimension(block.type.shape) == 3 ? of_cell(corners(element)) : of_face(corners(element));
   }
+  // Are curved sides of its elements looked at?
+  bool shows_curves() const {
+    return (dimension(block.type.shape) == 3 || plane_normal) &&
+           detail::JacobianPolynomial::of(block.type) != nullptr;
+  }
+  // Of the original element.
+  detail::ElementOrientation orientation(Index element, double sign) const {
+    if (!plane_normal) return {.sign = sign};
+    const bool is_turned = plane_normal->dot(face_vector(corners(element), original)) < 0;
+    return {.sign = 1, .normal = is_turned ? Vec3(-*plane_normal) : *plane_normal};
+  }
 
  private:
   bool is_moved() const { return moved.data() != original.data(); }
@@ -137,7 +149,9 @@ struct BlockView {
 struct ElementResult {
   double quality = 1;
   double quality_before = 1;
+  double sign = 1;  // of most Jacobians of the original element
   bool inverted = false;
+  bool curved_inverted_before = false;
 };
 
 // A corner that has no sign in the input cannot lose it; an element whose corners point both ways
@@ -146,7 +160,7 @@ ElementResult compare(const BlockView& view, Index element) {
   const auto [before, after] = view.jacobians(element);
   const double orientation = before.sum() < 0 ? -1 : 1;
   constexpr double none = std::numeric_limits<double>::infinity();
-  ElementResult result{none, none, false};
+  ElementResult result{.quality = none, .quality_before = none, .sign = orientation};
   for (std::size_t i = 0; i < before.n; ++i) {
     result.quality = std::min(result.quality, orientation * after.values[i]);
     result.quality_before = std::min(result.quality_before, orientation * before.values[i]);
@@ -155,6 +169,26 @@ ElementResult compare(const BlockView& view, Index element) {
         std::signbit(before.values[i]) == std::signbit(after.values[i]) && after.values[i] != 0;
     if (has_sign && !keeps_sign) result.inverted = true;
   }
+  return result;
+}
+
+// What curved sides add: elements of order 2 have to be positive everywhere (docs/math.md, eq. 61),
+// those that are not in the input as far as their corners tell.
+ElementResult compare_curved(const BlockView& view, Index element, const ElementResult& corners) {
+  const double sign = corners.sign;
+  const detail::ElementOrientation orientation = view.orientation(element, sign);
+  const auto at = [&](std::span<const Vec3> positions) {
+    return detail::curved_quality(view.block.type, view.block.element(element), positions,
+                                  orientation);
+  };
+  ElementResult result = corners;
+  const std::optional<detail::LeastValue> after = at(view.moved);
+  if (!after) return result;
+  result.quality = std::min(result.quality, after->value);
+  if (after->is_positive) return result;
+  const std::optional<detail::LeastValue> before = at(view.original);
+  result.curved_inverted_before = before && !before->is_positive;
+  if (!result.curved_inverted_before) result.inverted = true;
   return result;
 }
 
@@ -172,7 +206,8 @@ struct Bad {
 struct Summary {
   std::int64_t n_inverted = 0;
   double min_quality = 1;
-  std::int64_t n_curved = 0;
+  std::int64_t n_corners_only = 0;
+  std::int64_t n_inverted_before = 0;
   std::vector<Bad> worst;  // ascending, at most most_findings
 
   void add_inverted(const Bad& bad) {
@@ -186,18 +221,25 @@ struct Summary {
   void add(const Summary& other) {
     n_inverted += other.n_inverted;
     min_quality = std::min(min_quality, other.min_quality);
-    n_curved += other.n_curved;
+    n_corners_only += other.n_corners_only;
+    n_inverted_before += other.n_inverted_before;
     worst.insert(worst.end(), other.worst.begin(), other.worst.end());
     keep_worst();
   }
 };
 
+// Where to look.
+enum class Depth : std::uint8_t { corners, curves };
+
 Summary summarize_range(const BlockView& view, std::size_t block, std::size_t begin,
-                        std::size_t end) {
+                        std::size_t end, Depth depth) {
   Summary summary;
+  const bool shows_curves = depth == Depth::curves && view.shows_curves();
   for (std::size_t i = begin; i < end; ++i) {
     const auto element = static_cast<Index>(i);
-    const ElementResult result = compare(view, element);
+    ElementResult result = compare(view, element);
+    if (shows_curves) result = compare_curved(view, element, result);
+    summary.n_inverted_before += result.curved_inverted_before;
     summary.min_quality = std::min(summary.min_quality, result.quality);
     if (!result.inverted) continue;
     summary.add_inverted({result.quality, view.block.tags[i], block, element});
@@ -207,18 +249,19 @@ Summary summarize_range(const BlockView& view, std::size_t block, std::size_t be
 }
 
 Summary summarize(const Mesh& mesh, std::span<const Vec3> moved,
-                  const std::optional<Vec3>& plane_normal) {
+                  const std::optional<Vec3>& plane_normal, Depth depth = Depth::curves) {
   constexpr std::size_t grain = 2048;
   const int dim = dimension(mesh);
   Summary total;
   for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
     const BlockView view{mesh.blocks[b], mesh.nodes, moved, plane_normal};
     if (dim < 2 || dimension(view.block.type.shape) != dim) continue;
-    if (view.block.type.order > 1) total.n_curved += view.block.size();
+    if (view.block.type.order > 1 && !view.shows_curves())
+      total.n_corners_only += view.block.size();
     const std::size_t n = view.block.tags.size();
     std::vector<Summary> parts((n + grain - 1) / grain);
     detail::parallel_for(n, grain, [&](std::size_t begin, std::size_t end) {
-      parts[begin / grain] = summarize_range(view, b, begin, end);
+      parts[begin / grain] = summarize_range(view, b, begin, end, depth);
     });
     for (const Summary& part : parts) total.add(part);
   }
@@ -324,19 +367,35 @@ std::vector<std::uint8_t> nodes_of_poor_elements(const Mesh& mesh, std::span<con
 }  // namespace detail
 
 double min_quality(const Mesh& mesh) {
-  return summarize(mesh, mesh.nodes, std::nullopt).min_quality;
+  return summarize(mesh, mesh.nodes, common_plane(mesh, mesh.nodes)).min_quality;
 }
 
-MeshCheck check_mesh(const Mesh& mesh, std::span<const Vec3> moved) {
+namespace {
+
+MeshCheck check_to(Depth depth, const Mesh& mesh, std::span<const Vec3> moved) {
   check_positions(mesh, moved);
   const std::optional<Vec3> plane_normal = common_plane(mesh, moved);
-  Summary summary = summarize(mesh, moved, plane_normal);
+  Summary summary = summarize(mesh, moved, plane_normal, depth);
   summary.add(summarize_loose_faces(mesh, moved));
-  MeshCheck check{summary.n_inverted, summary.min_quality, summary.n_curved, {}, {}};
+  MeshCheck check{.inverted_elements = summary.n_inverted,
+                  .min_quality = summary.min_quality,
+                  .n_corners_only = summary.n_corners_only,
+                  .curved_inverted_before = summary.n_inverted_before,
+                  .findings = {}};
   for (const Bad& bad : summary.worst)
     check.findings.push_back(
         make_finding({mesh.blocks[bad.block], mesh.nodes, moved, plane_normal}, bad));
   return check;
+}
+
+}  // namespace
+
+MeshCheck detail::check_corners(const Mesh& mesh, std::span<const Vec3> moved) {
+  return check_to(Depth::corners, mesh, moved);
+}
+
+MeshCheck check_mesh(const Mesh& mesh, std::span<const Vec3> moved) {
+  return check_to(Depth::curves, mesh, moved);
 }
 
 MeshCheck check_mesh(const Mesh& mesh, std::span<const Vec3> moved, const Enclosure& enclosure) {

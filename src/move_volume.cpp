@@ -9,12 +9,12 @@
 
 #include "roughmesh/displace.hpp"
 
+#include "curved_elements.hpp"
 #include "disjoint_sets.hpp"
 #include "harmonic.hpp"
 #include "messages.hpp"
 #include "plane.hpp"
 #include "repair_volume.hpp"
-#include "second_order.hpp"
 
 namespace roughmesh {
 
@@ -28,7 +28,7 @@ struct VolumeMover::Plan {
   std::vector<std::array<Index, 2>> images;  // free nodes that move as an earlier one: (node, it)
   // None without elements to deform.
   std::unique_ptr<const detail::HarmonicExtension> extension;
-  std::unique_ptr<const detail::Followers> followers;
+  std::unique_ptr<const detail::CurvedElements> curved;
   std::unique_ptr<const detail::VolumeRepair> repair;
   std::vector<Index> wall_nodes;
 };
@@ -139,12 +139,19 @@ NodeFlags free_flags(const detail::NodeRoles& roles) {
   return is_free;
 }
 
-detail::Followers make_followers(const Mesh& mesh, int cell_dimension,
-                                 const detail::NodeRoles& roles, const Walls& walls) {
-  NodeFlags is_settled = walls.stays;
-  for (std::size_t node = 0; node < is_settled.size(); ++node)
-    if (roles.given[node] >= 0 || roles.unknown[node] >= 0) is_settled[node] = 1;
-  return {mesh, cell_dimension, is_settled};
+// Nodes of walls that slide, and nodes that move alike, do so as their edges do: an offset could
+// lead off the plane, or be another on the other side.
+detail::SettledNodes settled_nodes(const detail::NodeRoles& roles, const Walls& walls) {
+  const std::size_t n = walls.stays.size();
+  detail::SettledNodes known{walls.stays, NodeFlags(n, 0), walls.is_wall};
+  for (std::size_t node = 0; node < walls.images.size(); ++node)
+    if (walls.images[node] != static_cast<Index>(node))
+      known.keeps_straight[node] = known.keeps_straight[walls.images[node]] = 1;
+  for (std::size_t node = 0; node < n; ++node) {
+    if (roles.given[node] >= 0) known.is_settled[node] = known.is_moved[node] = 1;
+    if (known.is_settled[node] != 0) known.keeps_straight[node] = 0;
+  }
+  return known;
 }
 
 constexpr int most_splits = 2;
@@ -210,17 +217,12 @@ MovedVolume move_interior(const VolumeMover::Plan& plan, std::span<const Vec3> d
   for (std::size_t i = 0; i < plan.free_nodes.size(); ++i)
     shifts[plan.free_nodes[i]] = interior[plan.unknown_of_free[i]];
   for (const auto& [node, given] : plan.copies) shifts[node] = displacements[given];
-  plan.followers->fill(shifts);
   MovedVolume result{added(plan.nodes, std::move(shifts)), VolumeMethod::harmonic, nullptr};
-  if (!plan.repair) return result;
-  result = plan.repair->mend(std::move(result.nodes));
-  if (result.method != VolumeMethod::harmonic) equal_images(plan, result.nodes);
-  if (result.method == VolumeMethod::harmonic || plan.followers->nodes().empty()) return result;
-  shifts = result.nodes;
-  for (std::size_t node = 0; node < plan.nodes.size(); ++node) shifts[node] -= plan.nodes[node];
-  plan.followers->fill(shifts);
-  for (const Index node : plan.followers->nodes())
-    result.nodes[node] = plan.nodes[node] + shifts[node];
+  if (plan.repair) {
+    result = plan.repair->mend(std::move(result.nodes));
+    if (result.method != VolumeMethod::harmonic) equal_images(plan, result.nodes);
+  }
+  plan.curved->place(result.nodes);
   return result;
 }
 
@@ -268,11 +270,12 @@ VolumeMover::VolumeMover(const Mesh& mesh, std::span<const Surface> surfaces, co
     NodeFlags is_free = free_flags(roles);
     plan->extension = std::make_unique<const detail::HarmonicExtension>(
         mesh.nodes, detail::deforming_simplices(mesh, cell_dimension, is_free), roles);
-    if (last != VolumeMethod::harmonic && can_be_repaired(mesh, cell_dimension))
+    const bool can_repair = last != VolumeMethod::harmonic && can_be_repaired(mesh, cell_dimension);
+    if (can_repair)
       plan->repair = std::make_unique<const detail::VolumeRepair>(
           mesh, std::move(is_free), last == VolumeMethod::split ? most_splits : 0, ties);
-    plan->followers = std::make_unique<const detail::Followers>(
-        make_followers(mesh, cell_dimension, roles, walls));
+    plan->curved = std::make_unique<const detail::CurvedElements>(
+        mesh, cell_dimension, settled_nodes(roles, walls), can_repair);
   }
   plan_ = std::move(plan);
 }

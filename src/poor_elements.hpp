@@ -6,16 +6,20 @@
 #include <span>
 #include <vector>
 
-#include "roughmesh/mesh.hpp"
+#include "roughmesh/check.hpp"
 
 namespace roughmesh::detail {
 
-/// When an element counts as poor: inverted as check_mesh sees it, or of a quality below `share` of
-/// what it had, or of `enough` where it had more.
+/// When an element counts as poor: inverted as check_corners sees it, or of a quality below `share`
+/// of what it had, or of `enough` where it had more.
 struct PoorLimit {
   double share = 0;
   double enough = 0;
 };
+
+/// check_mesh of the elements with straight edges: what may be asked of corners before other nodes
+/// have followed.
+MeshCheck check_corners(const Mesh& mesh, std::span<const Vec3> moved);
 
 /// Per node 1 if it is a corner of a poor element of the largest dimension, none of whose corners
 /// is among `others` (per node; may be empty).

@@ -17,8 +17,8 @@ std::string describe_defects(const MeshCheck& check) {
   if (check.inverted_elements == 0)
     return fmt::format("{}: a relative difference of {:.1e}", worst.what, worst.value);
   return fmt::format(
-      "{} inverted elements, the worst is element {} ({}) at ({:.6g}, {:.6g}, {:.6g}) with scaled "
-      "Jacobian {:.3g}",
+      "{} inverted elements, the worst is element {} ({}) at ({:.6g}, {:.6g}, {:.6g}) with "
+      "quality {:.3g}",
       check.inverted_elements, worst.element, worst.what, worst.place.x(), worst.place.y(),
       worst.place.z(), worst.value);
 }

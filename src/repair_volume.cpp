@@ -83,14 +83,14 @@ bool VolumeRepair::needs_nothing(const MeshCheck& check) const {
 
 // The best positions so far and what is wrong with them.
 MeshCheck VolumeRepair::untangle_near_poor(std::vector<Vec3>& positions) const {
-  MeshCheck best = check_mesh(mesh_, positions);
+  MeshCheck best = check_corners(mesh_, positions);
   if (needs_nothing(best)) return best;
   for (const int layers : layers_of_stage) {
     const NodeFlags is_free = free_near_poor(positions, layers);
     if (std::find(is_free.begin(), is_free.end(), 1) == is_free.end()) break;
     std::vector<Vec3> candidate = positions;
     untangle({mesh_.nodes, simplices_, plane_normal_, first_new_node_, ties_}, is_free, candidate);
-    const MeshCheck check = check_mesh(mesh_, candidate);
+    const MeshCheck check = check_corners(mesh_, candidate);
     if (is_better(check, best)) {
       best = check;
       positions = std::move(candidate);
@@ -111,7 +111,7 @@ std::optional<MovedVolume> VolumeRepair::split_around(const NodeFlags& marked,
   const VolumeRepair repair(*mesh, std::move(is_free), n_splits_ - 1, first_new_node_, ties_);
   MovedVolume result = repair.mend(std::move(split->positions));
   if (!result.split) result.split = std::move(mesh);
-  if (!check_mesh(*result.split, result.nodes).valid()) return std::nullopt;
+  if (!check_corners(*result.split, result.nodes).valid()) return std::nullopt;
   result.method = VolumeMethod::split;
   return result;
 }
@@ -129,7 +129,7 @@ std::optional<MovedVolume> VolumeRepair::split_inverted_elements(
 
 MovedVolume VolumeRepair::mend(std::vector<Vec3> positions) const {
   MovedVolume result{std::move(positions), VolumeMethod::harmonic, nullptr};
-  const MeshCheck check = check_mesh(mesh_, result.nodes);
+  const MeshCheck check = check_corners(mesh_, result.nodes);
   if (needs_nothing(check)) return result;
   const bool can_split = n_splits_ > 0 && dimension(mesh_) == 3;
   if (can_split && !check.valid())

@@ -13,7 +13,7 @@
 
 namespace roughmesh::detail {
 
-/// The stages after the harmonic extension, cheapest first; check_mesh decides after each.
+/// The stages after the harmonic extension, cheapest first; check_corners decides after each.
 class VolumeRepair {
  public:
   /// @param mesh      the input, of volumes or planar; has to outlive this

@@ -173,11 +173,16 @@ void warn_of_fields(Report& report) {
 }
 
 void warn_of_curved_elements(Report& report, const MeshCheck& check) {
-  if (check.n_curved > 0)
+  if (check.n_corners_only > 0)
     report.warnings.push_back(fmt::format(
-        "{} curved elements were checked at their corners only; look at them with the checks of "
-        "your solver, or use linear elements",
-        check.n_curved));
+        "{} curved elements (pyramids, or faces in space) were checked at their corners only; look "
+        "at them with the checks of your solver, or use linear elements",
+        check.n_corners_only));
+  if (check.curved_inverted_before > 0)
+    report.warnings.push_back(fmt::format(
+        "{} curved elements are inverted somewhere, as in the input already; mesh again with gmsh "
+        "-optimize_ho",
+        check.curved_inverted_before));
 }
 
 void warn_of_split(Report& report, std::uint64_t realization, const Mesh& mesh, const Mesh& split) {

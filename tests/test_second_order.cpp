@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Elements of order 2: facets, boundaries, and how their inner nodes follow.
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <set>
 
@@ -42,10 +43,36 @@ std::vector<Vec3> constant(const Surface& surface, const Vec3& value) {
   return std::vector<Vec3>(surface.nodes.size(), value);
 }
 
+bool has_pyramids(const Mesh& mesh) {
+  return std::any_of(mesh.blocks.begin(), mesh.blocks.end(), [](const ElementBlock& block) {
+    return block.type.shape == ElementShape::pyramid;
+  });
+}
+
 std::vector<Vec3> shifts(const Mesh& mesh, const std::vector<Vec3>& moved) {
   std::vector<Vec3> result = moved;
   for (std::size_t i = 0; i < moved.size(); ++i) result[i] -= mesh.nodes[i];
   return result;
+}
+
+/// Makes what nodes of the surface that are no corners are told the mean of what the corners
+/// around them are.
+void keep_straight(const Mesh& mesh, const Surface& surface, std::vector<Vec3>& told) {
+  std::map<Index, std::size_t> at;
+  for (std::size_t i = 0; i < surface.nodes.size(); ++i) at[surface.nodes[i]] = i;
+  for (const ElementBlock& block : mesh.blocks)
+    for (Index e = 0; dimension(block.type.shape) == surface.dimension && e < block.size(); ++e) {
+      const auto nodes = block.element(e);
+      if (at.count(nodes[0]) == 0 || at.count(nodes.back()) == 0) continue;
+      std::vector<Vec3> of_element;
+      of_element.reserve(nodes.size());
+      for (const Index node : nodes) of_element.push_back(told[at.at(node)]);
+      for (const detail::FollowingNode& following : detail::following_nodes(block.type)) {
+        Vec3 sum = Vec3::Zero();
+        for (const auto& [other, weight] : following.of_others) sum += weight * of_element[other];
+        of_element[following.node] = told[at.at(nodes[following.node])] = sum;
+      }
+    }
 }
 
 /// Boundary elements and cells of a unit box, or of a unit square.
@@ -235,8 +262,9 @@ TEST(SecondOrder, MiddlesInterpolateQuadraticFunctions) {
   EXPECT_EQ(n_middles, 1 + 7 + 3 + 1);
 }
 
-// Corners move as those of the linear mesh do; on every inner edge the node in the middle keeps the
-// middle; what stays, stays; the nodes of the surface, all of them, go where they are told.
+// Corners move as those of the linear mesh do; what stays, stays; the nodes of the surface, all of
+// them, go where they are told. Where its edges and faces are told to stay straight, so does every
+// inner edge: the node in the middle keeps the middle.
 TEST(SecondOrder, InnerNodesFollowTheirEdges) {
   for (const Body& body : bodies()) {
     const Mesh& mesh = body.mesh;
@@ -246,7 +274,12 @@ TEST(SecondOrder, InnerNodesFollowTheirEdges) {
       const Vec3& x = mesh.nodes[node];
       told.push_back(0.02 * Vec3(std::sin(9 * x.y()), std::cos(8 * x.x()), 0));
       if (surface.dimension == 2) told.back().z() = 0.05 * std::sin(5 * x.x() + 7 * x.y());
+      // Walls stay as they are, so that the rim has to.
+      if (surface.dimension == 2 &&
+          (x.head<2>().minCoeff() < 1e-9 || x.head<2>().maxCoeff() > 1 - 1e-9))
+        told.back().setZero();
     }
+    keep_straight(mesh, surface, told);
     const VolumeMover mover(mesh, test::only(surface));
     EXPECT_TRUE(mover.moves_interior());
     const std::vector<Vec3> moved = mover.move(told).nodes;
@@ -270,8 +303,9 @@ TEST(SecondOrder, InnerNodesFollowTheirEdges) {
           const Index middle = nodes[n_corners(block.type.shape) + static_cast<int>(k)];
           if (on_surface[middle] || stays(mesh.nodes[middle])) continue;
           ++n_following;
+          // Offsets of the surface are round-off, of numbers near 1.
           EXPECT_NEAR((u[middle] - (u[nodes[edges[k][0]]] + u[nodes[edges[k][1]]]) / 2).norm(), 0,
-                      1e-15);
+                      1e-14);
         }
     }
     EXPECT_GT(n_following, 100);
@@ -281,7 +315,7 @@ TEST(SecondOrder, InnerNodesFollowTheirEdges) {
           EXPECT_EQ(moved[node], mesh.nodes[node]);
         }
     EXPECT_TRUE(check_mesh(mesh, moved).valid());
-    EXPECT_EQ(check_mesh(mesh, moved).n_curved, n_elements(mesh, surface.dimension + 1));
+    EXPECT_EQ(check_mesh(mesh, moved).n_corners_only > 0, has_pyramids(mesh));
   }
 }
 
@@ -342,7 +376,7 @@ TEST(SecondOrder, ASphereInABoxFromGmsh) {
   const std::vector<Vec3> moved = mover.move(displace_nodes(test::only(ball), {&heights, 1})).nodes;
   const MeshCheck check = check_mesh(mesh, moved);
   EXPECT_TRUE(check.valid());
-  EXPECT_EQ(check.n_curved, n_elements(mesh, 3));
+  EXPECT_EQ(check.n_corners_only, 0);
   for (Index node = 0; node < mesh.n_nodes(); ++node)
     if (mesh.nodes[node].lpNorm<Eigen::Infinity>() > 1 - 1e-9) {
       EXPECT_EQ(moved[node], mesh.nodes[node]);

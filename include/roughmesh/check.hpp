@@ -18,7 +18,7 @@ struct Finding {
   std::string what;           ///< "inverted tetrahedron", "folded triangle"
   Tag element = 0;            ///< its number in the file
   Vec3 place = Vec3::Zero();  ///< centroid in the moved mesh
-  double value = 0;           ///< smallest scaled Jacobian of the element
+  double value = 0;           ///< quality of the element, as of roughmesh::min_quality
   double limit = 0;           ///< value must be above this
 };
 
@@ -50,11 +50,17 @@ class Enclosure {
 
 /// Result of comparing a moved mesh with the mesh it came from.
 struct MeshCheck {
-  std::int64_t inverted_elements = 0;  ///< a corner Jacobian has another sign than before
-  double min_quality = 1;              ///< as of roughmesh::min_quality, negative where inverted
-  /// Elements of order 2 and more among those checked: only their corners were looked at, so that
-  /// a curved side may still cross another.
-  std::int64_t n_curved = 0;
+  /// A corner Jacobian has another sign than before, or that of a curved element is not positive
+  /// everywhere.
+  std::int64_t inverted_elements = 0;
+  double min_quality = 1;  ///< as of roughmesh::min_quality, negative where inverted
+  /// Pyramids of order 2, faces of order 2 that are in no plane and elements of higher order among
+  /// those checked: only their corners were looked at, so that a curved side may still cross
+  /// another.
+  std::int64_t n_corners_only = 0;
+  /// Curved elements that are not positive everywhere, but were not in the input either: no
+  /// findings as long as their corners are right.
+  std::int64_t curved_inverted_before = 0;
   std::vector<Finding> findings;            ///< the worst ones first, at most 10
   std::optional<double> volume_error = {};  ///< of Enclosure, where it was given
 
@@ -63,17 +69,19 @@ struct MeshCheck {
 };
 
 /// Smallest scaled Jacobian (docs/math.md, eq. 17) over the elements of the largest dimension, in
-/// the node order of the file; negative orientation of the file counts as positive. Of curved
-/// elements, at their corners, with straight edges. 1 without elements.
+/// the node order of the file; negative orientation of the file counts as positive. Of elements of
+/// order 2 that at their corners, with straight edges, or what eq. 61 has for their curved sides,
+/// if that is less. 1 without elements.
 double min_quality(const Mesh& mesh);
 
 /// An element is inverted, a face folded, unless every corner Jacobian that is not zero in `mesh`
 /// keeps its sign. The Jacobians of a face are seen along its normal, on the side where the normal
 /// was in `mesh`: all change sign where it turns by more than 90 degrees, one where a quadrangle
 /// becomes concave. Where `mesh` and `moved` lie in one plane, they are seen along its normal, and
-/// the faces are elements that invert. Checked, at their corners, are elements of the largest
-/// dimension and, beside volume elements, faces with a node that no volume element has, like
-/// shells.
+/// the faces are elements that invert. Elements of order 2 are inverted as well unless their
+/// determinant is proven to be positive everywhere (docs/math.md, eq. 60), if it was in `mesh`.
+/// Checked are elements of the largest dimension and, beside volume elements, at their corners,
+/// faces with a node that no volume element has, like shells.
 /// @param moved  n_nodes positions, finite
 /// @throws NumericalError  a coordinate that is not finite
 MeshCheck check_mesh(const Mesh& mesh, std::span<const Vec3> moved);

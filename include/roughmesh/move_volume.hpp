@@ -38,10 +38,11 @@ struct MovedVolume {
 /// volume (docs/math.md, eq. 16), so that small elements near the surface deform least. Where
 /// that inverts elements or leaves them poor, nodes around are moved by the foldover-free map (eq.
 /// 50 to 52); where an inverted element has no node that may move, edges are split. Other inner
-/// nodes of elements of order 2 follow the nodes of their edges and faces (eq. 38), which keeps a
-/// straight edge straight; that no curved element is inverted is not checked. Nodes of walls slide
-/// in their planes or stay, as find_walls says, nodes that move alike do so, and what walls that
-/// stay separate from the surfaces stays. A mesh without such elements moves its surfaces only.
+/// nodes of elements of order 2 move as on straight edges and by what the surface has beyond that,
+/// spread over the elements near it (eq. 62), but not into walls; curved elements that are inverted
+/// then are mended (eq. 63). Nodes of walls slide in their planes or stay, as find_walls says,
+/// nodes that move alike do so, and what walls that stay separate from the surfaces stays. A mesh
+/// without such elements moves its surfaces only.
 class VolumeMover {
  public:
   /// @param mesh      has to outlive the mover
