@@ -270,6 +270,13 @@ Mesh read_input(const RoughenOptions& options) {
 
 namespace {
 
+/// What the file at `path` will not hold, where it can be written at all.
+std::vector<std::string> output_losses(const Mesh& sample, const std::string& path,
+                                       const WriteOptions& options) {
+  check_output(sample, path, options);
+  return conversion_losses(sample, path, options);
+}
+
 /// Everything until the last file is written.
 ReportFile roughen_files(const RoughenOptions& options) {
   const Clock::time_point start = Clock::now();
@@ -277,9 +284,8 @@ ReportFile roughen_files(const RoughenOptions& options) {
   const Mesh mesh = read_input(options);
   // Before the hours that a large surface may take.
   const std::string first_path = output_path(options.output, options.first);
-  check_output(mesh, first_path, write_options(options));
   const std::vector<std::string> losses =
-      conversion_losses(mesh, first_path, write_options(options));
+      output_losses(output_sample(mesh, options), first_path, write_options(options));
   if (options.first > 0) keep_earlier_report(options);
   check_text_output(report_path(options));
   ReportFile file(report_path(options), start, seconds_since(start));

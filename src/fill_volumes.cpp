@@ -29,9 +29,11 @@ constexpr std::string_view another_gmsh = "try a newer gmsh (--gmsh PATH) or low
 
 // Gmsh goes on after most errors, so that only what it wrote tells whether it succeeded.
 Mesh run_fill(const ScratchFolder& folder, const GmshProgram& gmsh) {
-  const GmshOutcome outcome = run_gmsh(
-      folder,
-      {gmsh.path, {"-", std::string(fill_script_name), "-nt", "1", "-v", "3"}, gmsh.timeout});
+  const GmshOutcome outcome =
+      run_gmsh(folder, {.program = gmsh.path,
+                        .arguments = {"-", std::string(fill_script_name), "-nt", "1", "-v", "3"},
+                        .timeout = gmsh.timeout,
+                        .has_size = false});
   const std::string said = first_error(outcome.output);
   const bool has_mesh = std::filesystem::exists(folder / filled_name);
   if (outcome.exit_status != 0 || !has_mesh)
