@@ -75,15 +75,16 @@ void check_intersections(const CheckedFaces& faces) {
   std::vector<Index> each(faces.before.size());
   std::iota(each.begin(), each.end(), Index{0});
   const std::vector<std::uint8_t> all(faces.before.size(), 1);
-  const FoundPairs found = find_intersections({faces, faces.before, each, 2}, all);
-  if (found.pairs.empty()) return;
-  const FacePair& first = found.pairs.front();
+  const FacesInPlace here{faces, faces.before, each, 2};
+  const FoundPairs found = find_intersections(here, here, all);  // that did not move
+  if (found.in_input.empty()) return;
+  const FacePair& first = found.in_input.front();
   const FaceSource &a = faces.sources[first.a], &b = faces.sources[first.b];
   const Vec3& x = faces.before[faces.corners[first.a][0]];
   throw CheckError(fmt::format(
       "{} pairs of triangles around the volume to mesh intersect, the first are {} and {} "
       "at {}: it cannot be filled; lower --rms or repair the surface",
-      found.pairs.size(), std::min(a.element, b.element), std::max(a.element, b.element),
+      found.in_input.size(), std::min(a.element, b.element), std::max(a.element, b.element),
       place(x)));
 }
 

@@ -11,6 +11,7 @@
 #include "roughmesh/check.hpp"
 #include "roughmesh/displace.hpp"
 #include "roughmesh/mesh_io.hpp"
+#include "roughmesh/pipeline.hpp"
 
 #include "remesh_volume.hpp"
 #include "support/cells.hpp"
@@ -18,6 +19,7 @@
 #include "support/files.hpp"
 #include "support/meshes.hpp"
 #include "support/only.hpp"
+#include "support/second_order.hpp"
 
 using namespace roughmesh;
 using namespace roughmesh::detail;
@@ -30,7 +32,6 @@ constexpr double h = 0.125;
 // A ball in a box in a thick shell: volumes "inside", "outside" and "far", which nothing touches.
 Mesh ball_in_two_boxes() {
   Mesh mesh = test::ball_in_box(16);
-  const Mesh inner = mesh;
   ElementBlock& outside = mesh.blocks[3];
   ElementBlock far{outside.type, 3, {3}, {}, {}};
   ElementBlock near{outside.type, 2, {2}, {}, {}};
@@ -195,4 +196,175 @@ TEST(RemeshVolume, ElementsKeepTheirOrientation) {
   EXPECT_LT(test::tetrahedron_volume(*result.mesh, result.mesh->nodes, 1), 0);
   EXPECT_GT(test::tetrahedron_volume(*result.mesh, result.mesh->nodes, 2), 0);
   EXPECT_GT(min_quality(*result.mesh), 0);
+}
+
+// Nodes on the edges of faces stay those of the faces, curved as they are; everywhere else edges
+// are straight, each with one node of its own.
+TEST(RemeshVolume, MeshesOfSecondOrderKeepTheNodesOfTheirFaces) {
+  NEEDS_GMSH;
+  const Rough rough = roughened(test::second_order(test::ball_in_box(8), true), 0.8 * h);
+  const RemeshedVolume result = remeshed(rough);
+  const Mesh& mesh = *result.mesh;
+  const auto is_face = [](const ElementBlock& block) { return dimension(block.type.shape) == 2; };
+  EXPECT_EQ(elements_of(mesh, is_face), elements_of(rough.mesh, is_face));
+  std::map<std::pair<Index, Index>, Index> on_faces, on_edges;
+  const auto add = [](const ElementBlock& block, auto& middles) {
+    const auto n_corners_of = static_cast<std::size_t>(n_corners(block.type.shape));
+    for (Index e = 0; e < block.size(); ++e)
+      for (std::size_t k = 0; k < local_edges(block.type.shape).size(); ++k) {
+        const auto nodes = block.element(e);
+        const auto [i, j] = local_edges(block.type.shape)[k];
+        const Index middle = nodes[n_corners_of + k];
+        const auto [at, is_new] = middles.emplace(std::minmax(nodes[i], nodes[j]), middle);
+        EXPECT_EQ(at->second, middle);
+      }
+  };
+  for (const ElementBlock& block : mesh.blocks) add(block, is_face(block) ? on_faces : on_edges);
+  for (const auto& [edge, middle] : on_faces) EXPECT_EQ(on_edges.at(edge), middle);
+  Index n_bent = 0;
+  for (const auto& [edge, middle] : on_edges) {
+    const Vec3 straight = (mesh.nodes[edge.first] + mesh.nodes[edge.second]) / 2;
+    const double offset = (mesh.nodes[middle] - straight).norm();
+    if (!on_faces.contains(edge)) {
+      EXPECT_LT(offset, 1e-15);
+    }
+    n_bent += offset > 1e-3 ? 1 : 0;
+  }
+  EXPECT_GT(n_bent, 0);  // the surface is curved
+  EXPECT_NEAR(volume(mesh, mesh.nodes), 8, 8e-13);
+  for (std::size_t i = 0; i < rough.surface.nodes.size(); ++i) {
+    const auto at =
+        std::lower_bound(result.old_nodes.begin(), result.old_nodes.end(), rough.surface.nodes[i]);
+    ASSERT_TRUE(at != result.old_nodes.end() && *at == rough.surface.nodes[i]);
+    EXPECT_EQ(mesh.nodes[static_cast<std::size_t>(at - result.old_nodes.begin())],
+              rough.positions[rough.surface.nodes[i]]);
+  }
+}
+
+// One volume with an open sheet of rough faces in its middle: no element may cross it.
+TEST(RemeshVolume, ASurfaceInsideAVolumeIsKept) {
+  NEEDS_GMSH;
+  Mesh mesh = test::cell_box(ElementShape::tetrahedron, 8);
+  ElementBlock& cells = mesh.blocks[2];
+  cells.nodes.insert(cells.nodes.end(), mesh.blocks[3].nodes.begin(), mesh.blocks[3].nodes.end());
+  cells.tags.insert(cells.tags.end(), mesh.blocks[3].tags.begin(), mesh.blocks[3].tags.end());
+  mesh.blocks.pop_back();
+  const ElementBlock all = mesh.blocks[0];
+  mesh.blocks[0].nodes.clear();
+  mesh.blocks[0].tags.clear();
+  for (Index e = 0; e < all.size(); ++e) {
+    const auto nodes = all.element(e);
+    const bool is_within = std::all_of(nodes.begin(), nodes.end(), [&](Index node) {
+      const Vec3& x = mesh.nodes[node];
+      return std::max(std::abs(x.x() - 0.5), std::abs(x.y() - 0.5)) < 0.3;
+    });
+    if (!is_within) continue;
+    mesh.blocks[0].nodes.insert(mesh.blocks[0].nodes.end(), nodes.begin(), nodes.end());
+    mesh.blocks[0].tags.push_back(all.tags[e]);
+  }
+  mesh.groups[0].name = "surface";
+  const Rough rough = roughened(mesh, 0.1);
+  const Mesh result = *remeshed(rough).mesh;
+  EXPECT_NEAR(test::tetrahedron_volume(result, result.nodes), 1, 1e-13);
+  std::set<std::set<Index>> sides;
+  for (Index e = 0; e < result.blocks[2].size(); ++e)
+    for (const std::vector<int>& local : local_faces(ElementShape::tetrahedron)) {
+      const auto nodes = result.blocks[2].element(e);
+      sides.insert({nodes[local[0]], nodes[local[1]], nodes[local[2]]});
+    }
+  for (Index e = 0; e < result.blocks[0].size(); ++e) {
+    const auto nodes = result.blocks[0].element(e);
+    EXPECT_TRUE(sides.contains({nodes.begin(), nodes.end()}));
+  }
+}
+
+TEST(RemeshVolume, WhatWouldBeLostIsRefused) {
+  const auto message = [](const Mesh& mesh, const char* group) {
+    const Surface surface = select_surface(mesh, {.groups = {group}});
+    return test::message_of([&] { VolumeRemesher(mesh, test::only(surface), {}); });
+  };
+  const auto expect_part = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), text.npos) << text;
+  };
+  for (const ElementShape shape :
+       {ElementShape::hexahedron, ElementShape::prism, ElementShape::pyramid})
+    expect_part(message(test::cell_box(shape, 4), "middle"), "tetrahedra only");
+  const Mesh ball = test::ball_in_box(8);
+  const Index middle = ball.n_nodes() / 2;  // of the ball
+  Mesh with_point = ball;
+  with_point.blocks.push_back(test::make_block(test::point_type, 1, {1}, {middle}, 90'001));
+  expect_part(message(with_point, "surface"), "element 90001 (point) lies inside a volume");
+  Mesh with_link = ball;
+  with_link.periodic_links.push_back({3, 1, 2, {}, {{middle, 0}}});
+  expect_part(message(with_link, "surface"), "periodic node");
+  Mesh with_copy = ball;
+  with_copy.blocks.push_back(with_copy.blocks[2]);
+  expect_part(message(with_copy, "surface"), "share a side");
+  // A line that joins two nodes of faces inside a volume, on no face.
+  Mesh with_line = test::cell_box(ElementShape::tetrahedron, 2);
+  with_line.blocks.push_back(test::make_block(test::line_type, 1, {1}, {0, 13}, 90'001));
+  expect_part(message(with_line, "middle"), "the line between nodes 1 and 14");
+}
+
+namespace {
+
+// Flat tetrahedra with four nodes on the sphere cannot be split where they are of second order.
+RoughenOptions too_rough() {
+  RoughenOptions options;
+  options.surfaces[0].group = {"surface"};
+  options.surfaces[0].rms = 0.05;
+  options.surfaces[0].length = {0.3};
+  return options;
+}
+
+Report run(const Mesh& mesh, const RoughenOptions& options) {
+  return roughen(mesh, options, [&](const RoughMesh& rough, Report& report) {
+    EXPECT_TRUE(rough.check.valid());
+    EXPECT_EQ(report.realizations.back().min_quality, min_quality(rough.mesh));
+    EXPECT_EQ(rough.heights.size(), rough.mesh.nodes.size());
+    // Nodes of the surface keep their heights, in whatever place they stand.
+    std::map<Tag, Vec3> before;
+    for (Index node = 0; node < mesh.n_nodes(); ++node)
+      before[mesh.node_tags[node]] = mesh.nodes[node];
+    for (std::size_t i = 0; i < rough.heights.size(); ++i) {
+      if (rough.heights[i] == 0) continue;
+      EXPECT_EQ(rough.mesh.nodes[i] - before.at(rough.mesh.node_tags[i]), rough.displacements[i]);
+      EXPECT_NEAR(rough.displacements[i].dot(rough.normals[i]), rough.heights[i], 1e-12);
+    }
+  });
+}
+
+}  // namespace
+
+TEST(RemeshVolume, IsTheLastResortOfMoving) {
+  NEEDS_GMSH;
+  const Mesh mesh = test::second_order(test::ball_in_box(16), true);
+  const Report report = run(mesh, too_rough());
+  EXPECT_EQ(name(report.realizations[0].volume_method), "remesh");
+  EXPECT_EQ(std::count_if(report.warnings.begin(), report.warnings.end(),
+                          [](const std::string& w) { return w.find("anew") != w.npos; }),
+            1);
+  RoughenOptions without = too_rough();
+  without.gmsh = "/nonexistent/gmsh";
+  try {
+    run(mesh, without);
+    FAIL();
+  } catch (const CheckError& error) {
+    EXPECT_NE(std::string(error.what()).find("with the gmsh program (--gmsh PATH)"),
+              std::string::npos);
+  }
+}
+
+// A realization on elements of its own, then one on those of the input, in either order.
+TEST(RemeshVolume, WholeRunsHandOverWhatTheyChecked) {
+  NEEDS_GMSH;
+  const Mesh mesh = test::ball_in_box(16);
+  RoughenOptions options = too_rough();
+  options.volume = VolumeChoice::remesh;
+  options.realizations = 2;
+  const Report report = run(mesh, options);
+  for (const RealizationReport& realization : report.realizations)
+    EXPECT_EQ(name(realization.volume_method), "remesh");
+  options.box = 2;
+  EXPECT_THROW(run(mesh, options), InputError);
 }
