@@ -241,6 +241,41 @@ TEST(RemeshVolume, MeshesOfSecondOrderKeepTheNodesOfTheirFaces) {
   }
 }
 
+// A slab raised by one height: edges between nodes that moved and nodes that stay on the walls are
+// as straight as before.
+TEST(RemeshVolume, NodesOnEdgesOfWallsFollowTheirEnds) {
+  NEEDS_GMSH;
+  Mesh mesh = test::second_order(test::cell_box(ElementShape::tetrahedron, 4), true);
+  mesh.groups[0].name = "surface";
+  Rough rough = roughened(mesh, 0);
+  for (const Index node : rough.surface.nodes) rough.positions[node].z() += 0.05;
+  const Mesh result = *remeshed(rough).mesh;
+  for (const ElementBlock& block : result.blocks)
+    for (Index e = 0; e < block.size(); ++e)
+      for (std::size_t k = 0; k < local_edges(block.type.shape).size(); ++k) {
+        const auto nodes = block.element(e);
+        const auto [i, j] = local_edges(block.type.shape)[k];
+        const Index middle = nodes[static_cast<std::size_t>(n_corners(block.type.shape)) + k];
+        EXPECT_LT(
+            (result.nodes[nodes[i]] + result.nodes[nodes[j]] - 2 * result.nodes[middle]).norm(),
+            1e-15);
+      }
+  EXPECT_NEAR(test::tetrahedron_volume(result, result.nodes, 1), 0.55, 1e-13);
+}
+
+// Its boundary is two surfaces with nothing on their other sides: what gmsh fills must be between
+// them.
+TEST(RemeshVolume, ACavityStaysEmpty) {
+  NEEDS_GMSH;
+  Mesh shell = test::ball_in_box(16);
+  const double ball = test::tetrahedron_volume(shell, shell.nodes, 1);
+  shell.blocks.erase(shell.blocks.begin() + 2);
+  Rough rough = roughened(shell, 0);
+  for (const Index node : rough.surface.nodes) rough.positions[node] *= 1.2;
+  const Mesh result = *remeshed(rough).mesh;
+  EXPECT_NEAR(test::tetrahedron_volume(result, result.nodes), 8 - 1.2 * 1.2 * 1.2 * ball, 1e-12);
+}
+
 // One volume with an open sheet of rough faces in its middle: no element may cross it.
 TEST(RemeshVolume, ASurfaceInsideAVolumeIsKept) {
   NEEDS_GMSH;
