@@ -94,7 +94,8 @@ TEST(FillVolumes, CoordinatesThatAreNotFiniteAreRefused) {
        {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()}) {
     FillTask task = ball_task();
     task.nodes[3].y() = bad;
-    EXPECT_SAYS(refusal<InputError>(task), "not finite");
+    EXPECT_SAYS(refusal<InputError>(task),
+                "has a coordinate that is not finite; lower the heights");
   }
 }
 

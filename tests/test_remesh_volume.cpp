@@ -152,6 +152,23 @@ TEST(RemeshVolume, NewElementsFillTheVolumesWithoutAFlatOne) {
   }
 }
 
+// The boundary is that of the input where it went to, whatever the elements say.
+TEST(RemeshVolume, AMissingElementIsFoundByTheSumOfVolumes) {
+  NEEDS_GMSH;
+  Rough rough = roughened(test::ball_in_box(8), 0.3 * h);
+  for (Vec3& x : rough.positions) x.x() *= 1.5;  // the boundary too
+  const RemeshedVolume result = remeshed(rough);
+  const Enclosure enclosure(rough.mesh);
+  EXPECT_TRUE(check_remeshed(*result.mesh, rough.positions, enclosure).valid());
+  Mesh torn = *result.mesh;
+  std::vector<Index>& nodes = torn.blocks[3].nodes;
+  nodes.erase(nodes.end() - 4, nodes.end());
+  torn.blocks[3].tags.pop_back();
+  const MeshCheck check = check_remeshed(torn, rough.positions, enclosure);
+  EXPECT_FALSE(check.valid());
+  EXPECT_GT(check.volume_error.value(), 1e-6);
+}
+
 TEST(RemeshVolume, NewNumbersFollowTheOldOnes) {
   NEEDS_GMSH;
   Rough rough = roughened(ball_in_two_boxes());
