@@ -16,7 +16,7 @@
 namespace roughmesh::detail {
 namespace {
 
-constexpr std::string_view surfaces_name = "surfaces.msh", sizes_name = "sizes.pos";
+constexpr std::string_view surfaces_name = "surfaces.msh", sizes_name = "sizes.dat";
 
 Mesh mesh_of(const FillTask& task) {
   Mesh mesh;
@@ -37,35 +37,14 @@ Mesh mesh_of(const FillTask& task) {
   return mesh;
 }
 
-// For each corner all x, then all y, all z, all values.
-template <std::size_t N>
-void write_cells(const SizeMap& map, std::span<const std::array<Index, N>> cells,
-                 NumberWriter& numbers) {
-  for (const auto& cell : cells) {
-    for (int axis = 0; axis < 3; ++axis)
-      for (const Index corner : cell) numbers.number(map.places[corner][axis]);
-    for (const Index corner : cell) numbers.number(map.sizes[corner]);
-  }
-}
-
-// The legacy format of views: gmsh reads it many times faster than the parsed one.
-void write_sizes(const SizeMap& map, const std::filesystem::path& path) {
+// Gmsh's structured field: corner, spacings, numbers of points, values.
+void write_sizes(const SizeLattice& lattice, const std::filesystem::path& path) {
   OutputFile file(path);
   NumberWriter numbers(file, Encoding::binary);
-  numbers.text("$PostFormat\n1.4 1 8\n$EndPostFormat\n$View\nsizes 1\n");
-  // Scalars, vectors and tensors on eight shapes: points, lines, triangles, quadrangles,
-  // tetrahedra, hexahedra, prisms, pyramids; then seven shapes of order 2; then four of texts.
-  for (int kind = 0; kind < 8 * 3 + 7 * 3 + 4; ++kind)
-    numbers.text(fmt::format("{}{}", kind == 0 ? "" : " ",
-                             kind == 12   ? map.tetrahedra.size()
-                             : kind == 15 ? map.hexahedra.size()
-                                          : 0));
-  numbers.text("\n");
-  numbers.number(std::int32_t{1});  // tells the byte order
-  numbers.number(0.0);              // time
-  write_cells<4>(map, map.tetrahedra, numbers);
-  write_cells<8>(map, map.hexahedra, numbers);
-  numbers.text("\n$EndView\n");
+  numbers.vector(lattice.corner);
+  numbers.vector(Vec3::Constant(lattice.spacing));
+  for (const int n : lattice.n) numbers.number(std::int32_t{n});
+  for (const double size : lattice.sizes) numbers.number(size);
   file.commit();
 }
 
@@ -91,7 +70,8 @@ std::string fill_script(const FillTask& task) {
     script += volume_script(task.volumes[v], v + 1);
   const auto [least, most] = std::minmax_element(task.sizes.sizes.begin(), task.sizes.sizes.end());
   script += fmt::format(
-      "Merge \"{}\";\nField[1] = PostView;\nField[1].ViewIndex = 0;\nBackground Field = 1;\n"
+      "Field[1] = Structured;\nField[1].FileName = \"{}\";\nField[1].TextFormat = 0;\n"
+      "Background Field = 1;\n"
       "Mesh.MeshSizeMin = {:.17g};\nMesh.MeshSizeMax = {:.17g};\nMesh.MeshSizeFactor = 1;\n",
       sizes_name, *least, *most);
   // Without Renumber = 0 the nodes that are kept would lose their numbers.

@@ -13,7 +13,7 @@ namespace roughmesh::detail {
 inline constexpr std::string_view fill_script_name = "fill.geo", filled_name = "mesh.msh";
 
 /// The triangles as discrete surfaces (number of the sheet + 1) of an MSH file, the sizes as a
-/// view, and the script that fills volumes (their number + 1) and saves `filled_name` in MSH 4.1.
+/// field, and the script that fills volumes (their number + 1) and saves `filled_name` in MSH 4.1.
 /// Node i of the task gets number i + 1, and keeps it.
 void write_fill_files(const FillTask& task, const ScratchFolder& folder);
 

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "growing_sizes.hpp"
 #include "messages.hpp"
+#include "size_lattice.hpp"
 
 namespace roughmesh::detail {
 namespace {

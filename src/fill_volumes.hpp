@@ -10,6 +10,8 @@
 #include "roughmesh/error.hpp"
 #include "roughmesh/mesh.hpp"
 
+#include "size_lattice.hpp"
+
 namespace roughmesh::detail {
 
 /// The program, as --gmsh and --timeout name it.
@@ -18,15 +20,6 @@ struct GmshProgram {
   double timeout = 600;  ///< seconds of wall-clock time, > 0
 
   bool exists() const;  ///< a file that can be run is at the path, or in PATH where it is a name
-};
-
-/// Lengths of edges to aim at, linear on simplices, or on the cubes of a lattice. Where there are
-/// none, the largest of all.
-struct SizeMap {
-  std::vector<Vec3> places;
-  std::vector<double> sizes;                          ///< one for each place, a length
-  std::vector<std::array<Index, 4>> tetrahedra = {};  ///< positions in places
-  std::vector<std::array<Index, 8>> hexahedra = {};   ///< likewise, in the order of Mesh
 };
 
 /// A connected set of triangles with the same volumes on its two sides.
@@ -46,7 +39,7 @@ struct FillTask {
   std::vector<Vec3> nodes;  ///< each is a corner of a triangle
   std::vector<Sheet> sheets;
   std::vector<VolumeToFill> volumes;
-  SizeMap sizes;
+  SizeLattice sizes;  ///< to aim at
 };
 
 using Tetrahedron = std::array<Index, 4>;

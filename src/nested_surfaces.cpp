@@ -95,6 +95,7 @@ Eigen::AlignedBox3d box_of(const Component& component, std::span<const Vec3> nod
 std::vector<std::vector<Index>> enclosures(const std::vector<Component>& components,
                                            std::span<const Vec3> nodes) {
   std::vector<Eigen::AlignedBox3d> boxes;
+  boxes.reserve(components.size());
   for (const Component& component : components) boxes.push_back(box_of(component, nodes));
   std::vector<std::vector<Index>> around(components.size());
   parallel_for(components.size(), 1, [&](std::size_t begin, std::size_t end) {

@@ -95,33 +95,28 @@ void add_sheets(const std::vector<const RegionFace*>& faces, const std::vector<I
 }
 
 // Of each node the mean edge of the elements around it, in the mesh before it moved.
-SizeMap sizes_before(const Mesh& mesh, const VolumeRegions& regions,
-                     std::span<const std::uint8_t> is_touched) {
-  SizeMap map;
-  std::vector<Index> place(mesh.nodes.size(), -1), n_edges;
-  const auto place_of = [&](Index node) {
-    if (place[node] < 0) {
-      place[node] = static_cast<Index>(map.places.size());
-      map.places.push_back(mesh.nodes[node]);
-      map.sizes.push_back(0);
-      n_edges.push_back(0);
-    }
-    return place[node];
-  };
+SizeLattice sizes_before(const Mesh& mesh, const VolumeRegions& regions,
+                         std::span<const std::uint8_t> is_touched) {
+  std::vector<double> sums(mesh.nodes.size(), 0);
+  std::vector<Index> n_edges(mesh.nodes.size(), 0);
   for (std::size_t b = 0; b < mesh.blocks.size(); ++b)
     for (std::size_t e = 0; e < regions.of_block[b].size(); ++e) {
       if (is_touched[regions.of_block[b][e]] == 0) continue;
-      const auto nodes = mesh.blocks[b].element(static_cast<Index>(e));
-      auto& t = map.tetrahedra.emplace_back();
-      for (std::size_t k = 0; k < 4; ++k) t[k] = place_of(nodes[k]);
+      const auto t = mesh.blocks[b].element(static_cast<Index>(e));
       for (const auto& [i, j] : local_edges(ElementShape::tetrahedron))
         for (const Index end : {t[i], t[j]}) {
-          map.sizes[end] += (map.places[t[i]] - map.places[t[j]]).norm();
+          sums[end] += (mesh.nodes[t[i]] - mesh.nodes[t[j]]).norm();
           ++n_edges[end];
         }
     }
-  for (std::size_t i = 0; i < map.sizes.size(); ++i) map.sizes[i] *= share_of_size / n_edges[i];
-  return map;
+  std::vector<Vec3> places;
+  std::vector<double> sizes;
+  for (std::size_t node = 0; node < sums.size(); ++node) {
+    if (n_edges[node] == 0) continue;
+    places.push_back(mesh.nodes[node]);
+    sizes.push_back(share_of_size * sums[node] / n_edges[node]);
+  }
+  return mean_sizes(places, sizes);
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What gmsh could crash on never reaches it, and whatever it does, one clear line comes of it.
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <string>
@@ -7,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "fill_volumes.hpp"
-#include "growing_sizes.hpp"
+#include "size_lattice.hpp"
 #include "support/errors.hpp"
 #include "support/fake_gmsh.hpp"
 #include "support/meshes.hpp"
@@ -154,14 +156,37 @@ TEST(FillVolumes, TheProgramIsLookedForInPath) {
 TEST(GrowingSizes, GrowWithTheDistance) {
   const std::vector<Vec3> places = {{0, 0, 0}, {32, 0, 0}, {0, 16, 8}};
   const std::vector<double> sizes = {1, 3, 0.5};
-  const SizeMap map = growing_sizes(places, sizes);
-  ASSERT_EQ(map.places.size(), map.sizes.size());
-  EXPECT_FALSE(map.hexahedra.empty());
-  for (std::size_t i = 0; i < map.places.size(); ++i) {
-    double exact = 1e9;
-    for (std::size_t k = 0; k < places.size(); ++k)
-      exact = std::min(exact, sizes[k] + growth * (map.places[i] - places[k]).norm());
-    EXPECT_GT(map.sizes[i], exact - 1e-12);
-    EXPECT_LT(map.sizes[i], 1.13 * exact + 1e-12);
-  }
+  const SizeLattice lattice = growing_sizes(places, sizes);
+  for (int i = 0; i < lattice.n[0]; ++i)
+    for (int j = 0; j < lattice.n[1]; ++j)
+      for (int k = 0; k < lattice.n[2]; ++k) {
+        const Vec3 x = lattice.place({i, j, k});
+        double exact = 1e9;
+        for (std::size_t p = 0; p < places.size(); ++p)
+          exact = std::min(exact, sizes[p] + growth * (x - places[p]).norm());
+        const double size = lattice.sizes[lattice.number({i, j, k})];
+        EXPECT_GT(size, exact - 1e-12);
+        EXPECT_LT(size, 1.13 * exact + 1e-12);
+      }
+}
+
+// Sizes of gradient g at nodes not further than a diagonal of a cell give means that differ by at
+// most that times g; points beside these grow by another diagonal.
+TEST(MeanSizes, FollowThoseOfTheMesh) {
+  std::vector<Vec3> places;
+  std::vector<double> sizes;
+  const auto size_at = [](const Vec3& x) { return 1 + 0.1 * x.x() + 0.2 * x.y(); };
+  for (int i = 0; i < 20; ++i)
+    for (int j = 0; j < 20; ++j)
+      for (int k = 0; k < 20; ++k) {
+        places.emplace_back(i + 0.3 * std::sin(7 * j), j, k + 0.2 * std::cos(5 * i));
+        sizes.push_back(size_at(places.back()));
+      }
+  const SizeLattice lattice = mean_sizes(places, sizes);
+  const double diagonal = std::sqrt(3.0) * lattice.spacing;
+  for (int i = 0; i < lattice.n[0]; ++i)
+    for (int j = 0; j < lattice.n[1]; ++j)
+      for (int k = 0; k < lattice.n[2]; ++k)
+        EXPECT_NEAR(lattice.sizes[lattice.number({i, j, k})], size_at(lattice.place({i, j, k})),
+                    (2 * std::hypot(0.1, 0.2) + growth) * diagonal);
 }
