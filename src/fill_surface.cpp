@@ -124,6 +124,34 @@ void SurfaceFiller::add_box(double factor) {
       make_box_surface({Vec3(centre - half), Vec3(centre + half)}, median(sizes_) + growth * gap);
 }
 
+// One sheet and one volume for each component; the volume around it has it as a boundary too.
+void SurfaceFiller::add_components(std::span<const Index> number, FillTask& task) const {
+  const std::size_t n_components = nested_.components.size();
+  task.volumes.resize(n_components + (box_ ? 1 : 0));
+  for (std::size_t c = 0; c < n_components; ++c) {
+    const auto& component = nested_.components[c];
+    Sheet& sheet = task.sheets.emplace_back(Sheet{component.triangles, component.elements});
+    for (auto& t : sheet.triangles)
+      for (Index& node : t) node = number[node];
+    const auto s = static_cast<Index>(c);
+    task.volumes[c].boundary.push_back(s);
+    if (component.around >= 0)
+      task.volumes[component.around].boundary.push_back(s);
+    else if (box_)
+      task.volumes.back().boundary.push_back(s);
+  }
+}
+
+void SurfaceFiller::add_box_sheet(FillTask& task) const {
+  const auto first = static_cast<Index>(task.nodes.size());
+  task.volumes.back().boundary.push_back(static_cast<Index>(task.sheets.size()));
+  Sheet& sheet = task.sheets.emplace_back(Sheet{box_->triangles, {}});
+  for (auto& t : sheet.triangles)
+    for (Index& node : t) node += first;
+  sheet.elements.assign(sheet.triangles.size(), 0);
+  task.nodes.insert(task.nodes.end(), box_->nodes.begin(), box_->nodes.end());
+}
+
 FillTask SurfaceFiller::make_task(std::span<const Vec3> positions) const {
   FillTask task;
   std::vector<Index> number(mesh_.nodes.size(), -1);
@@ -131,40 +159,13 @@ FillTask SurfaceFiller::make_task(std::span<const Vec3> positions) const {
     number[node] = static_cast<Index>(task.nodes.size());
     task.nodes.push_back(positions[node]);
   }
-  const std::size_t n_components = nested_.components.size();
-  task.volumes.resize(n_components);
-  if (box_) task.volumes.emplace_back();
-  for (std::size_t c = 0; c < n_components; ++c) {
-    const auto& component = nested_.components[c];
-    Sheet sheet{component.triangles, component.elements};
-    for (auto& t : sheet.triangles)
-      for (Index& node : t) node = number[node];
-    task.sheets.push_back(std::move(sheet));
-    task.volumes[c].boundary.push_back(static_cast<Index>(c));
-  }
-  for (std::size_t c = 0; c < n_components; ++c) {
-    const Index around = nested_.components[c].around;
-    if (around >= 0)
-      task.volumes[around].boundary.push_back(static_cast<Index>(c));
-    else if (box_)
-      task.volumes.back().boundary.push_back(static_cast<Index>(c));
-  }
-  std::vector<Vec3> places = task.nodes;
+  add_components(number, task);
   std::vector<double> sizes = sizes_;
   if (box_) {
-    const auto first = static_cast<Index>(task.nodes.size());
-    Sheet& sheet = task.sheets.emplace_back(Sheet{box_->triangles, {}});
-    for (auto& t : sheet.triangles)
-      for (Index& node : t) node += first;
-    sheet.elements.assign(sheet.triangles.size(), 0);
-    task.volumes.back().boundary.push_back(static_cast<Index>(n_components));
-    task.nodes.insert(task.nodes.end(), box_->nodes.begin(), box_->nodes.end());
-    for (const Vec3& x : box_->nodes) {
-      places.push_back(x);
-      sizes.push_back((box_->nodes[1] - box_->nodes[0]).norm());
-    }
+    add_box_sheet(task);
+    sizes.resize(task.nodes.size(), (box_->nodes[1] - box_->nodes[0]).norm());
   }
-  task.sizes = growing_sizes(places, sizes);
+  task.sizes = growing_sizes(task.nodes, sizes);
   return task;
 }
 

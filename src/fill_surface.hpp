@@ -33,6 +33,8 @@ class SurfaceFiller {
 
  private:
   void add_box(double factor);
+  void add_components(std::span<const Index> number, FillTask& task) const;
+  void add_box_sheet(FillTask& task) const;
   FillTask make_task(std::span<const Vec3> positions) const;
   Mesh with_groups(std::span<const Vec3> positions, const FilledVolumes& filled) const;
 

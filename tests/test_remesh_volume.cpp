@@ -138,8 +138,7 @@ TEST(RemeshVolume, NewElementsFillTheVolumesWithoutAFlatOne) {
   const RemeshedVolume result = remeshed(rough);
   const Mesh& mesh = *result.mesh;
   EXPECT_NEAR(volume(mesh, mesh.nodes), 8, 8e-13);
-  std::vector<Vec3> points;
-  for (Index p = 0; p < rough.surface.n_points(); ++p) points.push_back(Vec3::Zero());
+  std::vector<Vec3> points(rough.surface.points.size());
   for (std::size_t i = 0; i < rough.surface.nodes.size(); ++i)
     points[rough.surface.point_of_node[i]] = rough.positions[rough.surface.nodes[i]];
   EXPECT_NEAR(test::tetrahedron_volume(mesh, mesh.nodes, 1), enclosed_volume(rough.surface, points),
