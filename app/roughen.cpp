@@ -270,16 +270,26 @@ Mesh read_input(const RoughenOptions& options) {
 
 namespace {
 
+/// What the file at `path` will not hold, where it can be written at all.
+/// @param sample  output_sample()
+std::vector<std::string> output_losses(const Mesh& sample, const RoughenOptions& request) {
+  const std::string path = output_path(request.output, request.first);
+  const WriteOptions options = write_options(request);
+  check_output(sample, path, options);
+  if (n_elements(sample, 3) > 0 && request.volume == VolumeChoice::remesh &&
+      !carries_volumes(sample, path, options))
+    throw InputError(fmt::format(
+        "{}: holds surfaces only, and --volume remesh makes volumes; name it .msh or .vtu", path));
+  return conversion_losses(sample, path, options);
+}
+
 /// Everything until the last file is written.
 ReportFile roughen_files(const RoughenOptions& options) {
   const Clock::time_point start = Clock::now();
   ProgressBar progress(options);
   const Mesh mesh = read_input(options);
   // Before the hours that a large surface may take.
-  const std::string first_path = output_path(options.output, options.first);
-  check_output(mesh, first_path, write_options(options));
-  const std::vector<std::string> losses =
-      conversion_losses(mesh, first_path, write_options(options));
+  const std::vector<std::string> losses = output_losses(output_sample(mesh, options), options);
   if (options.first > 0) keep_earlier_report(options);
   check_text_output(report_path(options));
   ReportFile file(report_path(options), start, seconds_since(start));

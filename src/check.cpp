@@ -398,14 +398,29 @@ MeshCheck check_mesh(const Mesh& mesh, std::span<const Vec3> moved) {
   return check_to(Depth::curves, mesh, moved);
 }
 
-MeshCheck check_mesh(const Mesh& mesh, std::span<const Vec3> moved, const Enclosure& enclosure) {
-  MeshCheck check = check_mesh(mesh, moved);
-  check.volume_error = enclosure.volume_error(mesh, moved);
+namespace {
+
+void add_volume_error(std::optional<double> error, MeshCheck& check) {
+  check.volume_error = error;
   if (!check.volumes_add_up())
     check.findings.push_back(
         {"the volumes of the elements do not add up to what the boundary "
          "encloses",
          0, Vec3::Zero(), *check.volume_error, Enclosure::largest_error});
+}
+
+}  // namespace
+
+MeshCheck check_mesh(const Mesh& mesh, std::span<const Vec3> moved, const Enclosure& enclosure) {
+  MeshCheck check = check_mesh(mesh, moved);
+  add_volume_error(enclosure.volume_error(mesh, moved), check);
+  return check;
+}
+
+MeshCheck check_remeshed(const Mesh& remeshed, std::span<const Vec3> moved,
+                         const Enclosure& enclosure) {
+  MeshCheck check = check_mesh(remeshed, remeshed.nodes);
+  add_volume_error(enclosure.volume_error_inside(remeshed, moved), check);
   return check;
 }
 

@@ -224,6 +224,14 @@ void check_tolerance(const RoughenOptions& o) {
           "a number between 0 and 1, exclusive");
 }
 
+void check_volume(const RoughenOptions& o) {
+  if (!o.box) return;
+  if (o.volume != VolumeChoice::remesh)
+    throw InputError(
+        fmt::format("--box: {:g}; without --volume remesh no volume is made; give both", *o.box));
+  require(std::isfinite(*o.box) && *o.box > 1, "--box", *o.box, "above 1");
+}
+
 void check_files(const RoughenOptions& o) {
   if (o.ascii && o.binary)
     throw InputError("--ascii: not together with --binary; give one of them");
@@ -245,6 +253,7 @@ void check_options(const RoughenOptions& o) {
   check_ensemble(o);
   check_report(o);
   check_files(o);
+  check_volume(o);
   check_tolerance(o);
   check_surfaces(o);
 }

@@ -70,7 +70,7 @@ Enclosure::Enclosure(const Mesh& mesh) {
     auto& corners = faces_.emplace_back(std::array<Index, 4>{-1, -1, -1, -1});
     std::copy(face.corners().begin(), face.corners().end(), corners.begin());
   }
-  is_exact_ = error(mesh, mesh.nodes) <= largest_error;
+  is_exact_ = error(mesh, mesh.nodes, mesh.nodes) <= largest_error;
 }
 
 double Enclosure::enclosed(std::span<const Vec3> nodes) const {
@@ -85,15 +85,23 @@ double Enclosure::enclosed(std::span<const Vec3> nodes) const {
   return sum;
 }
 
-double Enclosure::error(const Mesh& mesh, std::span<const Vec3> nodes) const {
+// @param outer  positions of the input's nodes, on its boundary
+double Enclosure::error(const Mesh& mesh, std::span<const Vec3> nodes,
+                        std::span<const Vec3> outer) const {
   if (faces_.empty()) return 0;
-  const double volume = enclosed(nodes);
+  const double volume = enclosed(outer);
   return std::abs(filled(mesh, nodes, plane_normal_) - volume) / std::abs(volume);
 }
 
 std::optional<double> Enclosure::volume_error(const Mesh& mesh, std::span<const Vec3> moved) const {
   if (!is_exact_) return std::nullopt;
-  return error(mesh, moved);
+  return error(mesh, moved, moved);
+}
+
+std::optional<double> Enclosure::volume_error_inside(const Mesh& remeshed,
+                                                     std::span<const Vec3> moved) const {
+  if (!is_exact_) return std::nullopt;
+  return error(remeshed, remeshed.nodes, moved);
 }
 
 }  // namespace roughmesh

@@ -269,22 +269,21 @@ std::string without_colours(const std::string& text) {
 
 // In whole seconds where it is a number of them.
 [[noreturn]] void fail_late(const GmshCall& call) {
-  throw InputError(
-      fmt::format("{}: not done after {:g} s and stopped; ask for a larger --mesh-size "
-                  "or give it more time with --timeout",
-                  call.program, call.timeout));
+  throw InputError(fmt::format(
+      "{}: not done after {:g} s and stopped; {}give it more time with --timeout", call.program,
+      call.timeout, call.has_size ? "ask for a larger --mesh-size or " : ""));
 }
 
 [[noreturn]] void fail_crashed(const GmshCall& call, int signal_number, const std::string& output) {
   if (signal_number == SIGXFSZ)
-    throw InputError(
-        fmt::format("{}: wrote a file larger than the memory that is free and was stopped; ask for "
-                    "a larger --mesh-size",
-                    call.program));
+    throw InputError(fmt::format(
+        "{}: wrote a file larger than the memory that is free and was stopped; {}", call.program,
+        call.has_size ? "ask for a larger --mesh-size" : "use a coarser mesh"));
   const std::string said = first_error(output);
-  throw NumericalError(
-      fmt::format("{}: crashed ({}){}{}; try another --mesh-size or a newer gmsh (--gmsh PATH)",
-                  call.program, ::strsignal(signal_number), said.empty() ? "" : " after: ", said));
+  throw NumericalError(fmt::format("{}: crashed ({}){}{}; try {}a newer gmsh (--gmsh PATH)",
+                                   call.program, ::strsignal(signal_number),
+                                   said.empty() ? "" : " after: ", said,
+                                   call.has_size ? "another --mesh-size or " : ""));
 }
 
 Clock::time_point deadline(double timeout) {

@@ -23,6 +23,7 @@ struct GmshCall {
   /// Size of each file that it writes, and of its memory with room for programs and libraries.
   /// Absent: the memory that is free, beyond which a mesh could not be read.
   std::optional<std::uint64_t> most_bytes = {};
+  bool has_size = true;  ///< of the mesh, asked for by the user: another may help
 };
 
 struct GmshOutcome {

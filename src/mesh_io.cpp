@@ -233,6 +233,12 @@ bool carries_fields(const Mesh& mesh, const std::filesystem::path& path,
   return !plan.copies_source && plan.format->holds.point_fields;
 }
 
+bool carries_volumes(const Mesh& mesh, const std::filesystem::path& path,
+                     const WriteOptions& options) {
+  const WritePlan plan = make_plan(mesh, path, options);
+  return plan.copies_source || plan.format->holds.most_dimension == 3;
+}
+
 void write_text(const std::string& text, const std::filesystem::path& path) {
   detail::OutputFile output(path);
   output.write(text);

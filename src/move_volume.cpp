@@ -192,6 +192,8 @@ std::string_view name(VolumeMethod method) {
       return "foldover-free";
     case VolumeMethod::split:
       return "split";
+    case VolumeMethod::remesh:
+      return "remesh";
     default:
       return "none";
   }

@@ -17,7 +17,14 @@
 namespace roughmesh {
 
 std::string_view name(VolumeChoice choice) {
-  return choice == VolumeChoice::move ? "move" : "none";
+  switch (choice) {
+    case VolumeChoice::move:
+      return "move";
+    case VolumeChoice::remesh:
+      return "remesh";
+    default:
+      return "none";
+  }
 }
 
 AutocorrelationOptions autocorrelation_options(const Roughness& o) {

@@ -2,6 +2,7 @@
 #include "roughmesh/pipeline.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -14,6 +15,7 @@
 #include "field_ensemble.hpp"
 #include "parallel.hpp"
 #include "refusals.hpp"
+#include "remesher.hpp"
 #include "rough_surface.hpp"
 #include "stage_timer.hpp"
 #include "surface_report.hpp"
@@ -69,6 +71,19 @@ std::vector<std::uint8_t> following_nodes(const Walls& walls, std::span<const Su
   return flags;
 }
 
+/// Values at nodes of the input as values at those of a mesh with nodes added, or others.
+/// @param old_nodes  of the first nodes of that mesh; null where they are all those of the input
+template <class Value>
+std::vector<Value> on_nodes_of(const Mesh& mesh, std::vector<Value> values,
+                               const std::vector<Index>* old_nodes, const Value& zero) {
+  if (old_nodes != nullptr) {
+    for (std::size_t i = 0; i < old_nodes->size(); ++i) values[i] = values[(*old_nodes)[i]];
+    values.resize(old_nodes->size());
+  }
+  values.resize(mesh.nodes.size(), zero);
+  return values;
+}
+
 VolumeMethod last_method(const RoughenOptions& options) {
   return options.volume == VolumeChoice::move ? VolumeMethod::split : VolumeMethod::none;
 }
@@ -105,6 +120,7 @@ class Run {
         volume_mover_(timer_.time(
             &Timings::volume,
             [&] { return VolumeMover(mesh, surfaces_.surfaces, walls_, last_method(options)); })),
+        remesher_(timer_.time(&Timings::volume, [&] { return make_remesher(); })),
         surface_mover_(timer_.time(&Timings::displace, [&] { return make_surface_mover(); })),
         quality_before_(timer_.time(&Timings::check, [&] { return min_quality(mesh); })),
         enclosure_(timer_.time(&Timings::check, [&] { return Enclosure(mesh); })),
@@ -114,9 +130,6 @@ class Run {
         targets_(timer_.time(&Timings::audit, [&] { return expect_sq(surfaces_, fields_); })) {
     report_fields();
     rough_.mesh = mesh;
-    rough_.normals = at_nodes<Vec3>(
-        mesh, surfaces_.surfaces,
-        [&](std::size_t s) -> const auto& { return surfaces_.surfaces[s].normals; }, Vec3::Zero());
   }
 
   /// What is returned is lent until the next call.
@@ -128,10 +141,7 @@ class Run {
         timer_.time(&Timings::displace, [&] { return surface_mover_.move(heights); });
     accept_surface(displacements);
     const VolumeMethod method = move_volume(displacements);
-    rough_.heights = at_nodes<double>(
-        mesh_, surfaces_.surfaces, [&](std::size_t s) -> const auto& { return heights[s]; }, 0.0);
-    rough_.heights.resize(rough_.mesh.nodes.size(), 0);
-    rough_.normals.resize(rough_.mesh.nodes.size(), Vec3::Zero());
+    fill_fields(heights);
     report_.realizations.push_back(describe_realization(method, heights));
     return rough_;
   }
@@ -157,6 +167,11 @@ class Run {
   bool walls_can_slide() const {
     return report_.request.volume == VolumeChoice::move &&
            n_elements(mesh_, surfaces_.surfaces.front().dimension + 1) > 0;
+  }
+
+  std::unique_ptr<const detail::Remesher> make_remesher() const {
+    if (report_.request.volume != VolumeChoice::remesh) return nullptr;
+    return std::make_unique<const detail::Remesher>(mesh_, surfaces_.surfaces, report_.request);
   }
 
   Walls make_walls() const {
@@ -209,12 +224,8 @@ class Run {
 
   /// The surface alone, before anything follows it.
   void accept_surface(const std::vector<Vec3>& displacements) {
-    const std::vector<Index>& nodes = surface_mover_.nodes();
-    rough_.surface_check = timer_.time(&Timings::check, [&] {
-      std::vector<Vec3> moved = mesh_.nodes;
-      for (std::size_t i = 0; i < nodes.size(); ++i) moved[nodes[i]] += displacements[i];
-      return checker_.check(moved);
-    });
+    rough_.surface_check =
+        timer_.time(&Timings::check, [&] { return checker_.check(moved_surface(displacements)); });
     if (report_.realizations.empty())
       detail::warn_of_input_intersections(report_, rough_.surface_check);
     refuse_surface();
@@ -237,17 +248,19 @@ class Run {
   }
 
   VolumeMethod move_volume(const std::vector<Vec3>& displacements) {
+    if (remesher_) {
+      take_remeshed(*remesher_, moved_surface(displacements));
+      detail::refuse_invalid(rough_.check, rough_.realization, remedy(), report_);
+      report_remeshed();
+      return VolumeMethod::remesh;
+    }
     const MovedVolume moved =
         timer_.time(&Timings::volume, [&] { return volume_mover_.move(displacements); });
-    const Mesh& smooth = moved.split ? *moved.split : mesh_;
-    if (moved.split || is_split_) rough_.mesh = smooth;  // else only its nodes differ
-    is_split_ = moved.split != nullptr;
-    rough_.mesh.nodes = moved.nodes;
-    rough_.displacements = differences(moved.nodes, smooth.nodes);
-    rough_.check =
-        timer_.time(&Timings::check, [&] { return check_mesh(smooth, moved.nodes, enclosure_); });
-    detail::refuse_invalid(rough_.check, rough_.realization,
-                           detail::remedy(surfaces_.fields, n_torn()), report_);
+    take_moved(moved);
+    std::string remedy = this->remedy();
+    if (!rough_.check.valid() && remesh_at_last(with_walls(displacements, moved), remedy))
+      return VolumeMethod::remesh;
+    detail::refuse_invalid(rough_.check, rough_.realization, remedy, report_);
     accept_walls();
     if (report_.realizations.empty()) detail::warn_of_curved_elements(report_, rough_.check);
     if (moved.split) detail::warn_of_split(report_, rough_.realization, mesh_, *moved.split);
@@ -256,6 +269,103 @@ class Run {
                             {"Garanzha et al. (2021), Foldover-free maps in 50 lines of code, "
                              "doi:10.1145/3450626.3459847"});
     return moved.method;
+  }
+
+  std::string remedy() const { return detail::remedy(surfaces_.fields, n_torn()); }
+
+  void take_moved(const MovedVolume& moved) {
+    const Mesh& smooth = moved.split ? *moved.split : mesh_;
+    if (moved.split || has_own_elements_) rough_.mesh = smooth;  // else only its nodes differ
+    has_own_elements_ = moved.split != nullptr;
+    old_nodes_.reset();
+    rough_.mesh.nodes = moved.nodes;
+    rough_.displacements = differences(moved.nodes, smooth.nodes);
+    rough_.check =
+        timer_.time(&Timings::check, [&] { return check_mesh(smooth, moved.nodes, enclosure_); });
+  }
+
+  /// The surface where it goes, all else where it was.
+  std::vector<Vec3> moved_surface(const std::vector<Vec3>& displacements) const {
+    std::vector<Vec3> nodes = mesh_.nodes;
+    const std::vector<Index>& moving = surface_mover_.nodes();
+    for (std::size_t i = 0; i < moving.size(); ++i) nodes[moving[i]] += displacements[i];
+    return nodes;
+  }
+
+  /// Likewise, with the walls where they slid to.
+  std::vector<Vec3> with_walls(const std::vector<Vec3>& displacements,
+                               const MovedVolume& moved) const {
+    std::vector<Vec3> nodes = moved_surface(displacements);
+    for (const SlidingNode& each : walls_.sliding) nodes[each.node] = moved.nodes[each.node];
+    return nodes;
+  }
+
+  void take_remeshed(const detail::Remesher& remesher, const std::vector<Vec3>& moved) {
+    detail::RemeshedVolume remeshed =
+        timer_.time(&Timings::volume, [&] { return remesher.remesh(moved); });
+    rough_.mesh = *remeshed.mesh;
+    old_nodes_ = std::move(remeshed.old_nodes);
+    has_own_elements_ = true;
+    rough_.displacements =
+        on_nodes_of<Vec3>(rough_.mesh, differences(moved, mesh_.nodes), &*old_nodes_, Vec3::Zero());
+    rough_.check = timer_.time(&Timings::check, [&] {
+      if (dimension(mesh_) == 3) return check_remeshed(rough_.mesh, moved, enclosure_);
+      return check_remeshed(rough_.mesh, rough_.mesh.nodes, Enclosure(rough_.mesh));
+    });
+  }
+
+  void report_remeshed() {
+    detail::warn_of_remeshing(report_, rough_.realization, mesh_, rough_.mesh);
+    if (report_.realizations.empty()) detail::warn_of_curved_elements(report_, rough_.check);
+    detail::add_citations(
+        report_.citations,
+        {"Geuzaine and Remacle (2009), Gmsh, doi:10.1002/nme.2579",
+         "Marot, Pellerin and Remacle (2019), One machine, one minute, three billion tetrahedra, "
+         "doi:10.1002/nme.5987"});
+  }
+
+  /// Where moving its nodes leaves a mesh invalid.
+  /// @param remedy  told why there is no way out here
+  bool remesh_at_last(const std::vector<Vec3>& moved, std::string& remedy) {
+    if (report_.request.volume != VolumeChoice::move || dimension(mesh_) < 3) return false;
+    if (!detail::gmsh_program(report_.request).exists()) {
+      remedy += "; with the gmsh program (--gmsh PATH) its volume would be meshed anew";
+      return false;
+    }
+    const RoughMesh before = rough_;
+    const bool had_own_elements = has_own_elements_;
+    try {
+      take_remeshed(detail::Remesher(mesh_, surfaces_.surfaces, report_.request), moved);
+      if (rough_.check.valid()) {
+        report_remeshed();
+        return true;
+      }
+      remedy += "; meshing its volume anew left it invalid too";
+    } catch (const Error& error) {
+      remedy += fmt::format("; meshing its volume anew failed: {}", error.what());
+    }
+    rough_ = before;
+    has_own_elements_ = had_own_elements;
+    old_nodes_.reset();
+    return false;
+  }
+
+  /// At the nodes of the rough mesh, from those of the input.
+  void fill_fields(const std::vector<std::vector<double>>& heights) {
+    const std::vector<Index>* const old_nodes = old_nodes_ ? &*old_nodes_ : nullptr;
+    rough_.heights = on_nodes_of<double>(
+        rough_.mesh,
+        at_nodes<double>(
+            mesh_, surfaces_.surfaces, [&](std::size_t s) -> const auto& { return heights[s]; },
+            0.0),
+        old_nodes, 0.0);
+    rough_.normals = on_nodes_of<Vec3>(
+        rough_.mesh,
+        at_nodes<Vec3>(
+            mesh_, surfaces_.surfaces,
+            [&](std::size_t s) -> const auto& { return surfaces_.surfaces[s].normals; },
+            Vec3::Zero()),
+        old_nodes, Vec3::Zero());
   }
 
   RealizationReport describe_realization(VolumeMethod volume_method,
@@ -279,15 +389,17 @@ class Run {
   const RoughSurfaces surfaces_;
   const Walls walls_;
   const VolumeMover volume_mover_;
+  const std::unique_ptr<const detail::Remesher> remesher_;  // where all volumes are meshed anew
   const SurfaceMover surface_mover_;
   const double quality_before_;
   const Enclosure enclosure_;
   const SurfaceChecker checker_;                       // of what does not follow
   const std::optional<SurfaceChecker> walls_checker_;  // of all, where walls slide
   const FieldEnsemble fields_;
-  const std::vector<SqTarget> targets_;  // one for each surface
-  RoughMesh rough_;                      // the latest
-  bool is_split_ = false;                // it has elements of its own
+  const std::vector<SqTarget> targets_;          // one for each surface
+  RoughMesh rough_;                              // the latest
+  bool has_own_elements_ = false;                // it is not on those of the input
+  std::optional<std::vector<Index>> old_nodes_;  // RemeshedVolume::old_nodes, if it is such
 };
 
 }  // namespace
@@ -304,6 +416,17 @@ Report roughen(const Mesh& mesh, const RoughenOptions& options, const Deliver& d
     run.timer().time(&Timings::write, [&] { deliver(rough, report); });
   }
   return report;
+}
+
+Mesh output_sample(const Mesh& mesh, const RoughenOptions& options) {
+  Mesh sample = mesh;
+  if (options.volume != VolumeChoice::remesh || mesh.nodes.size() < 4) return sample;
+  // Its number and entity are free: the sample differs from the file that was read.
+  Tag tag = 0;
+  for (const ElementBlock& block : mesh.blocks)
+    for (const Tag each : block.tags) tag = std::max(tag, each);
+  sample.blocks.push_back({{ElementShape::tetrahedron, 1, 4}, 0, {}, {0, 1, 2, 3}, {tag + 1}});
+  return sample;
 }
 
 std::vector<PointField> point_fields(const RoughMesh& rough) {

@@ -194,6 +194,18 @@ void warn_of_split(Report& report, std::uint64_t realization, const Mesh& mesh, 
       realization, split.nodes.size() - mesh.nodes.size(), n_elements(split) - n_elements(mesh)));
 }
 
+void warn_of_remeshing(Report& report, std::uint64_t realization, const Mesh& mesh,
+                       const Mesh& remeshed) {
+  report.warnings.push_back(fmt::format(
+      "realization {}: {}: {} nodes and {} volume elements (input: {} and {}); surfaces, groups "
+      "and "
+      "entities are kept, comments and data of the file are not",
+      realization,
+      dimension(mesh) == 3 ? "volumes beside the rough surface were meshed anew"
+                           : "the surface was filled with tetrahedra",
+      remeshed.nodes.size(), n_elements(remeshed, 3), mesh.nodes.size(), n_elements(mesh, 3)));
+}
+
 void warn_of_walls(Report& report, Index n_nodes, bool can_slide) {
   if (n_nodes > 0)
     report.warnings.push_back(fmt::format(

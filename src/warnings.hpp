@@ -41,6 +41,10 @@ void warn_of_curved_elements(Report& report, const MeshCheck& check);
 /// A realization on more elements than the input has.
 void warn_of_split(Report& report, std::uint64_t realization, const Mesh& mesh, const Mesh& split);
 
+/// A realization on other elements than the input.
+void warn_of_remeshing(Report& report, std::uint64_t realization, const Mesh& mesh,
+                       const Mesh& remeshed);
+
 /// Nodes of the surfaces that move although they lie on faces that stay.
 /// @param can_slide  other faces would have followed
 void warn_of_walls(Report& report, Index n_nodes, bool can_slide);

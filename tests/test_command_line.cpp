@@ -15,6 +15,7 @@
 #include "support/cells.hpp"
 #include "support/files.hpp"
 #include "support/meshes.hpp"
+#include "support/planar.hpp"
 #include "support/process.hpp"
 #include "support/second_order.hpp"
 
@@ -297,6 +298,26 @@ TEST_F(CommandLine, SaysWhatCannotBeDone) {
     EXPECT_NE(outcome.err.find(reason), std::string::npos) << outcome.err;
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "executed"));
+}
+
+TEST_F(CommandLine, SaysWhatCannotBeMeshedAnew) {
+  const std::string job = " --rms 0.02 --length 0.8 ";
+  const std::string remesh = " --volume remesh ";
+  write_mesh(test::ring(24), folder / "ring.msh");
+  for (const auto& [input, arguments, reason] : std::vector<std::array<std::string, 3>>{
+           {"sphere.msh", "-o a.msh --box 2", "--box: 2; without --volume remesh"},
+           {"sphere.msh", "-o a.msh --box 1" + remesh, "--box: 1; must be above 1"},
+           {"ball.msh --group surface", "-o a.msh --box 2" + remesh,
+            "--box: 2; the mesh has volumes"},
+           {"sphere.msh", "-o a.stl" + remesh, "a.stl: holds surfaces only"},
+           {"sphere.msh", "-o a.ply" + remesh, "a.ply: holds surfaces only"},
+           {"ring.msh --group interface", "-o a.msh" + remesh, "planar mesh"},
+           {"sphere.msh", "-o a.msh --gmsh /nonexistent" + remesh, "/nonexistent: not found"}}) {
+    const Outcome outcome = run("roughen " + input + job + arguments);
+    expect_failure(outcome, 2, input + " " + arguments);
+    EXPECT_NE(outcome.err.find(reason), std::string::npos) << outcome.err;
+  }
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"ball.msh", "ring.msh", "sphere.msh"}));
 }
 
 // One line that begins with the option, and before anything is computed: Rq of 10^9 would be

@@ -11,7 +11,6 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -19,6 +18,7 @@
 
 #include "gmsh_process.hpp"
 #include "support/errors.hpp"
+#include "support/fake_gmsh.hpp"
 #include "support/files.hpp"
 
 using namespace roughmesh;
@@ -26,29 +26,14 @@ using namespace roughmesh::detail;
 
 namespace {
 
-// A shell script that stands in for gmsh.
-class FakeGmsh {
- public:
-  explicit FakeGmsh(const std::string& body) : path_(folder_ / "gmsh") {
-    test::write_bytes(path_, "#!/bin/sh\n" + body);
-    ::chmod(path_.c_str(), 0700);
-  }
-  std::string path() const { return path_.string(); }
-  const test::TemporaryFolder& folder() const { return folder_; }
-
- private:
-  test::TemporaryFolder folder_;
-  std::filesystem::path path_;
-};
-
 GmshOutcome run_fake(const std::string& body, const std::vector<std::string>& arguments = {}) {
-  const FakeGmsh gmsh(body);
+  const test::FakeGmsh gmsh(body);
   const ScratchFolder folder;
   return run_gmsh(folder, {gmsh.path(), arguments, 60});
 }
 
 template <typename E>
-std::string message_of(const FakeGmsh& gmsh, double timeout) {
+std::string message_of(const test::FakeGmsh& gmsh, double timeout) {
   const ScratchFolder folder;
   try {
     run_gmsh(folder, {gmsh.path(), {}, timeout});
@@ -83,7 +68,7 @@ TEST(GmshProcess, ArgumentsReachItAsTheyAre) {
 }
 
 TEST(GmshProcess, ItsHomeAndFolderAreTheScratchFolderAndItsInputIsEmpty) {
-  const FakeGmsh gmsh("pwd; echo $HOME; echo $GMSH_HOME; cat");
+  const test::FakeGmsh gmsh("pwd; echo $HOME; echo $GMSH_HOME; cat");
   const ScratchFolder folder;
   const std::string path = folder.path().string();
   ::setenv("GMSH_HOME", "/somewhere", 1);
@@ -99,7 +84,7 @@ TEST(GmshProcess, OutputIsBoundedAndNeverStopsTheChild) {
 }
 
 TEST(GmshProcess, AHangIsKilledWithItsChildrenAtTheTimeLimit) {
-  const FakeGmsh gmsh("sleep 1000 & echo $! > \"$(dirname \"$0\")/child\"; wait");
+  const test::FakeGmsh gmsh("sleep 1000 & echo $! > \"$(dirname \"$0\")/child\"; wait");
   EXPECT_EQ(message_of<InputError>(gmsh, 0.5),
             gmsh.path() +
                 ": not done after 0.5 s and stopped; ask for a larger --mesh-size or give "
@@ -109,7 +94,7 @@ TEST(GmshProcess, AHangIsKilledWithItsChildrenAtTheTimeLimit) {
 }
 
 TEST(GmshProcess, AChildThatClosesItsOutputIsStillTimed) {
-  const FakeGmsh gmsh("exec >&- 2>&-; sleep 1000");
+  const test::FakeGmsh gmsh("exec >&- 2>&-; sleep 1000");
   EXPECT_NE(message_of<InputError>(gmsh, 0.3).find("not done after 0.3 s"), std::string::npos);
 }
 
@@ -120,7 +105,7 @@ TEST(GmshProcess, WhatALeftChildHoldsOpenIsNotWaitedFor) {
 }
 
 TEST(GmshProcess, ACrashIsToldWithWhatGmshSaidLast) {
-  const FakeGmsh gmsh("echo 'Error   : bad surface' >&2; kill -SEGV $$");
+  const test::FakeGmsh gmsh("echo 'Error   : bad surface' >&2; kill -SEGV $$");
   EXPECT_EQ(message_of<NumericalError>(gmsh, 60),
             gmsh.path() +
                 ": crashed (Segmentation fault) after: bad surface; try another "
@@ -128,7 +113,7 @@ TEST(GmshProcess, ACrashIsToldWithWhatGmshSaidLast) {
 }
 
 TEST(GmshProcess, FilesAreLimitedInSize) {
-  const FakeGmsh gmsh("sleep 0.2; exec head -c 3000000 /dev/zero > big");
+  const test::FakeGmsh gmsh("sleep 0.2; exec head -c 3000000 /dev/zero > big");
   const ScratchFolder folder;
   const auto run = [&](std::uint64_t most) {
     return run_gmsh(folder, {gmsh.path(), {}, 60, {}, most}).exit_status;
@@ -144,7 +129,7 @@ TEST(GmshProcess, FilesAreLimitedInSize) {
 }
 
 TEST(GmshProcess, MemoryIsLimited) {
-  const FakeGmsh gmsh("sleep 0.2; ulimit -v");
+  const test::FakeGmsh gmsh("sleep 0.2; ulimit -v");
   const ScratchFolder folder;
   const std::uint64_t kib = (std::uint64_t{4} << 20) + 1024;  // 4 GiB for programs, 1 MiB
   EXPECT_EQ(run_gmsh(folder, {gmsh.path(), {}, 60, {}, 1U << 20}).output, fmt::format("{}\n", kib));
@@ -167,7 +152,7 @@ TEST(GmshProcess, AMissingProgramIsToldWithTheRemedy) {
 }
 
 TEST(GmshProcess, TheProgramMayBeNamedFromTheCallersFolder) {
-  const FakeGmsh gmsh("echo found");
+  const test::FakeGmsh gmsh("echo found");
   const ScratchFolder folder;
   const std::string relative = std::filesystem::relative(gmsh.path()).string();
   ASSERT_NE(relative.find('/'), std::string::npos);
@@ -221,7 +206,7 @@ TEST(ScratchFolder, SaysSoWhenNoneCanBeMade) {
 
 // An interrupt comes while gmsh runs: its group is killed and the folder goes.
 TEST(ScratchFolder, AnInterruptKillsTheChildAndRemovesTheFolder) {
-  const FakeGmsh gmsh(
+  const test::FakeGmsh gmsh(
       "pwd > \"$(dirname \"$0\")/folder\"; sleep 1000 & echo $! > \"$(dirname \"$0\")/child\"; "
       "wait");
   const pid_t caller = ::fork();

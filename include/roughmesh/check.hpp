@@ -37,10 +37,16 @@ class Enclosure {
   /// @param moved  n_nodes positions
   std::optional<double> volume_error(const Mesh& mesh, std::span<const Vec3> moved) const;
 
+  /// Likewise of a mesh with other elements and nodes inside the same boundary.
+  /// @param remeshed  at its place
+  /// @param moved     n_nodes positions of the input; those on its boundary count
+  std::optional<double> volume_error_inside(const Mesh& remeshed,
+                                            std::span<const Vec3> moved) const;
+
   static constexpr double largest_error = 1e-12;
 
  private:
-  double error(const Mesh& mesh, std::span<const Vec3> nodes) const;
+  double error(const Mesh& mesh, std::span<const Vec3> nodes, std::span<const Vec3> outer) const;
   double enclosed(std::span<const Vec3> nodes) const;
 
   std::vector<std::array<Index, 4>> faces_;  // lines and triangles end with -1
@@ -88,6 +94,12 @@ MeshCheck check_mesh(const Mesh& mesh, std::span<const Vec3> moved);
 
 /// The same, and that volumes add up; the last finding tells if they do not.
 MeshCheck check_mesh(const Mesh& mesh, std::span<const Vec3> moved, const Enclosure& enclosure);
+
+/// Of a mesh with new volume elements inside the boundary of the input: quality of all elements,
+/// and that volumes add up. Elements have no former place here, so that none is found inverted.
+/// @param moved  as for Enclosure::volume_error_inside
+MeshCheck check_remeshed(const Mesh& remeshed, std::span<const Vec3> moved,
+                         const Enclosure& enclosure);
 
 enum class SurfaceDefect : std::uint8_t {
   intersection,  ///< of two faces

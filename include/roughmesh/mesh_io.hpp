@@ -64,6 +64,11 @@ std::vector<std::string> conversion_losses(const Mesh& mesh, const std::filesyst
 bool carries_fields(const Mesh& mesh, const std::filesystem::path& path,
                     const WriteOptions& options = {});
 
+/// Would a file at `path` hold the volume elements of the mesh?
+/// @throws InputError  as write_mesh would, before anything is written
+bool carries_volumes(const Mesh& mesh, const std::filesystem::path& path,
+                     const WriteOptions& options = {});
+
 /// Writes text the same way: whole or not at all. For reports beside meshes.
 void write_text(const std::string& text, const std::filesystem::path& path);
 

@@ -16,10 +16,12 @@ enum class VolumeMethod {
   none,           ///< only the nodes of the surface move
   harmonic,       ///< harmonic extension with weight 1/V (1/area of the faces of a planar mesh)
   foldover_free,  ///< where that inverts or spoils elements: the foldover-free map around these
-  split           ///< where elements have no node to move: edges split there, then the map again
+  split,          ///< where elements have no node to move: edges split there, then the map again
+  remesh          ///< volumes beside the surfaces meshed anew; by the pipeline, not by VolumeMover
 };
 
-std::string_view name(VolumeMethod method);  ///< "none", "harmonic", "foldover-free", "split"
+/// "none", "harmonic", "foldover-free", "split", "remesh"
+std::string_view name(VolumeMethod method);
 
 /// Where the nodes of a mesh end up.
 struct MovedVolume {

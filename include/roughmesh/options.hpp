@@ -25,8 +25,9 @@ namespace roughmesh {
 
 /// What the interior of a volume mesh does.
 enum class VolumeChoice {
-  move,  ///< it follows the surface
-  none   ///< it stays; only nodes of the surface move
+  move,    ///< it follows the surface
+  remesh,  ///< it is meshed anew by gmsh, and a bare closed surface is filled
+  none     ///< it stays; only nodes of the surface move
 };
 
 std::string_view name(VolumeChoice choice);
@@ -69,6 +70,7 @@ struct RoughenOptions {
   std::uint64_t realizations = 1;
   std::uint64_t first = 0;
   VolumeChoice volume = VolumeChoice::move;
+  std::optional<double> box = {};
   bool allow_invalid = false;
   std::string unit = {};
   std::string report = {};
@@ -175,7 +177,9 @@ void for_each_file_option(Options& o, Visit&& visit) {
                    "round the sharp edges of solids of a CAD file first (--edge-angle); best at "
                    "least two mesh sizes"},
         o.round);
-  visit(OptionText{"gmsh", "PATH", "the gmsh program, which meshes CAD files and scripts"}, o.gmsh);
+  visit(OptionText{"gmsh", "PATH",
+                   "the gmsh program, which meshes CAD files and scripts and fills volumes"},
+        o.gmsh);
   visit(OptionText{"timeout", "S", "seconds that gmsh may take"}, o.timeout);
   visit(OptionText{"trust_scripts", "",
                    "run geometry scripts that call programs or read and write other files"},
@@ -210,7 +214,16 @@ void for_each_run_option(Options& o, Visit&& visit) {
       o.tolerance);
   visit(OptionText{"realizations", "N", "number of meshes to make"}, o.realizations);
   visit(OptionText{"first", "K", "number of the first realization"}, o.first);
-  visit(OptionText{"volume", "HOW", "what the interior of a volume mesh does"}, o.volume);
+  visit(OptionText{"volume", "HOW",
+                   "what the interior of a volume mesh does (move: it follows, and is meshed anew "
+                   "if all else fails; remesh: gmsh meshes volumes beside the surface anew, and "
+                   "fills a bare closed surface)"},
+        o.volume);
+  visit(
+      OptionText{"box", "FACTOR",
+                 "with --volume remesh of a bare closed surface: mesh the space around it too, up "
+                 "to a box FACTOR times its bounding box, > 1"},
+      o.box);
   visit(OptionText{"allow_invalid", "", "write meshes with inverted elements too, with a warning"},
         o.allow_invalid);
   visit(OptionText{"unit", "NAME", "name of the length unit, repeated in the report"}, o.unit);
@@ -253,7 +266,8 @@ struct Choices<EdgeRule> {
 };
 template <>
 struct Choices<VolumeChoice> {
-  static constexpr std::array values = {VolumeChoice::move, VolumeChoice::none};
+  static constexpr std::array values = {VolumeChoice::move, VolumeChoice::remesh,
+                                        VolumeChoice::none};
 };
 template <>
 struct Choices<MeshFormat> {

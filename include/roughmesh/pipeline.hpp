@@ -20,13 +20,18 @@ namespace roughmesh {
 /// One realization, as the pipeline hands it over; lent until `deliver` returns.
 struct RoughMesh {
   std::uint64_t realization = 0;
-  Mesh mesh = {};  ///< the input with moved nodes
+  Mesh mesh = {};  ///< the input with moved nodes, or with other elements where it was split or
+                   ///< meshed anew
   SurfaceCheck surface_check = {};
   MeshCheck check = {};
   std::vector<double> heights = {};      ///< one per node of the mesh; 0 off the surface
   std::vector<Vec3> normals = {};        ///< one per node of the mesh; zero off the surface
   std::vector<Vec3> displacements = {};  ///< one per node of the mesh
 };
+
+/// The input with an element of every shape that roughen() would hand over: for check_output()
+/// before a long run.
+Mesh output_sample(const Mesh& mesh, const RoughenOptions& options);
 
 /// Takes one rough mesh, for example to write it. The last entry of report.realizations belongs to
 /// it; its `path` may be filled in.
