@@ -11,6 +11,8 @@
 
 #include "roughmesh/mesh.hpp"
 
+#include "conjugate_gradients.hpp"
+
 namespace roughmesh::detail {
 
 /// Of a sparse matrix.
@@ -87,11 +89,13 @@ class ExtensionSystem {
                                       RowRange& coupling)>;
 
   /// @param make_rows  called from several threads, for disjoint ranges
-  ExtensionSystem(Index n_unknown, Index n_given, const MakeRows& make_rows);
+  /// @param sliding    unknowns that stay in a plane or on a line
+  ExtensionSystem(Index n_unknown, Index n_given, const MakeRows& make_rows,
+                  std::vector<SlidingRow> sliding = {});
 
   /// @param given  n_given displacements, finite
   /// @return       n_unknown displacements; the same bits on any number of threads
-  /// @throws NumericalError  conjugate gradients did not converge
+  /// @throws NumericalError  conjugate gradients did not come near a solution
   std::vector<Vec3> extend(std::span<const Vec3> given) const;
 
   using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
@@ -103,6 +107,7 @@ class ExtensionSystem {
 
   Matrix stiffness_;
   Matrix coupling_;
+  std::vector<SlidingRow> sliding_;
 };
 
 }  // namespace roughmesh::detail

@@ -3,11 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
-
-#include <fmt/format.h>
-
-#include "roughmesh/error.hpp"
 
 #include "corners.hpp"
 #include "parallel.hpp"
@@ -15,7 +12,6 @@
 namespace roughmesh::detail {
 namespace {
 
-constexpr std::size_t rows_per_range = 1024;
 // Six volumes over the cube of the longest edge (two areas over its square), below which a simplex
 // is left out.
 constexpr double flat = 1e-10;
@@ -109,90 +105,6 @@ Adjacency make_adjacency(std::span<const Simplex> simplices, const NodeRoles& ro
   return adjacency;
 }
 
-struct Entry {
-  Index column = 0;
-  double value = 0;
-};
-
-// A row under construction: some fifteen columns, where a search from the start beats any index. A
-// hub with very many neighbours collects what comes after the first ones, to be merged in the end.
-class Row {
- public:
-  void clear() { entries_.clear(); }
-  void add(Index column, double value) {
-    const auto at = is_long() ? entries_.end()
-                              : std::find_if(entries_.begin(), entries_.end(),
-                                             [&](const Entry& e) { return e.column == column; });
-    if (at == entries_.end())
-      entries_.push_back({column, value});
-    else
-      at->value += value;
-  }
-  std::span<const Entry> sorted() {
-    if (is_long()) {
-      merge();
-    } else {
-      std::sort(entries_.begin(), entries_.end(), by_column);
-    }
-    return entries_;
-  }
-
- private:
-  static constexpr std::size_t most_searched = 64;
-
-  static bool by_column(const Entry& a, const Entry& b) { return a.column < b.column; }
-  bool is_long() const { return entries_.size() >= most_searched; }
-
-  // Stable, so that the values of a column are added in the order in which they came.
-  void merge() {
-    std::stable_sort(entries_.begin(), entries_.end(), by_column);
-    std::size_t last = 0;
-    for (std::size_t i = 1; i < entries_.size(); ++i) {
-      if (entries_[i].column == entries_[last].column)
-        entries_[last].value += entries_[i].value;
-      else
-        entries_[++last] = entries_[i];
-    }
-    entries_.resize(last + 1);
-  }
-
-  std::vector<Entry> entries_;
-};
-
-// Consecutive rows of a matrix.
-struct RowRange {
-  std::vector<Index> sizes;
-  std::vector<Index> columns;
-  std::vector<double> values;
-
-  void append(std::span<const Entry> row) {
-    sizes.push_back(static_cast<Index>(row.size()));
-    for (const Entry& entry : row) {
-      columns.push_back(entry.column);
-      values.push_back(entry.value);
-    }
-  }
-};
-
-void join(const std::vector<RowRange>& ranges, Index n_rows, Index n_columns,
-          HarmonicExtension::Matrix& matrix) {
-  matrix.resize(n_rows, n_columns);
-  Index* offsets = matrix.outerIndexPtr();
-  std::size_t row = 0;
-  for (const RowRange& range : ranges)
-    for (const Index size : range.sizes) {
-      offsets[row + 1] = offsets[row] + size;
-      ++row;
-    }
-  matrix.resizeNonZeros(offsets[n_rows]);
-  parallel_for(ranges.size(), 1, [&](std::size_t begin, std::size_t) {
-    const Index first = offsets[begin * rows_per_range];
-    std::copy(ranges[begin].columns.begin(), ranges[begin].columns.end(),
-              matrix.innerIndexPtr() + first);
-    std::copy(ranges[begin].values.begin(), ranges[begin].values.end(), matrix.valuePtr() + first);
-  });
-}
-
 // Builds each row from the simplices around its unknown: no two threads write to one number, and
 // the order of every sum is that of the simplices.
 class Assembly {
@@ -257,14 +169,6 @@ class Assembly {
   double scale_;
 };
 
-void require_convergence(const Solution& solution, double tolerance) {
-  if (solution.converged) return;
-  throw NumericalError(fmt::format(
-      "conjugate gradients for the volume stopped after {} iterations at a relative residual of "
-      "{:.1e}, above {:.0e}; improve the worst elements of the input mesh",
-      solution.iterations, solution.residual, tolerance));
-}
-
 }  // namespace
 
 bool is_flat(std::span<const Vec3> nodes, const Simplex& simplex) {
@@ -272,31 +176,13 @@ bool is_flat(std::span<const Vec3> nodes, const Simplex& simplex) {
 }
 
 HarmonicExtension::HarmonicExtension(std::span<const Vec3> nodes,
-                                     std::span<const Simplex> simplices, const NodeRoles& roles) {
-  sliding_ = roles.sliding;
-  const Assembly assembly(nodes, simplices, roles);
-  const auto n = static_cast<std::size_t>(roles.n_unknown);
-  std::vector<RowRange> stiffness((n + rows_per_range - 1) / rows_per_range);
-  std::vector<RowRange> coupling(stiffness.size());
-  parallel_for(n, rows_per_range, [&](std::size_t begin, std::size_t end) {
-    const std::size_t range = begin / rows_per_range;
-    assembly.rows(begin, end, stiffness[range], coupling[range]);
-  });
-  join(stiffness, roles.n_unknown, roles.n_unknown, stiffness_);
-  join(coupling, roles.n_unknown, roles.n_given, coupling_);
-}
-
-std::vector<Vec3> HarmonicExtension::extend(std::span<const Vec3> given) const {
-  std::vector<Vec3> load(static_cast<std::size_t>(stiffness_.rows()), Vec3::Zero());
-  parallel_for(load.size(), rows_per_range, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      for (Matrix::InnerIterator entry(coupling_, static_cast<Index>(i)); entry; ++entry)
-        load[i] -= entry.value() * given[entry.col()];
-  });
-  const SolveOptions options;
-  Solution solution = solve(stiffness_, load, sliding_, options);
-  require_convergence(solution, options.tolerance);
-  return std::move(solution.values);
-}
+                                     std::span<const Simplex> simplices, const NodeRoles& roles)
+    : system_(
+          roles.n_unknown, roles.n_given,
+          [assembly = std::make_shared<const Assembly>(nodes, simplices, roles)](
+              std::size_t begin, std::size_t end, RowRange& stiffness, RowRange& coupling) {
+            assembly->rows(begin, end, stiffness, coupling);
+          },
+          roles.sliding) {}
 
 }  // namespace roughmesh::detail

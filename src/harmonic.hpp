@@ -6,11 +6,10 @@
 #include <span>
 #include <vector>
 
-#include <Eigen/SparseCore>
-
 #include "roughmesh/mesh.hpp"
 
 #include "conjugate_gradients.hpp"
+#include "extension_system.hpp"
 
 namespace roughmesh::detail {
 
@@ -47,16 +46,13 @@ class HarmonicExtension {
 
   /// @param given  n_given displacements, finite
   /// @return       n_unknown displacements; the same bits on any number of threads
-  /// @throws NumericalError  conjugate gradients did not converge
-  std::vector<Vec3> extend(std::span<const Vec3> given) const;
+  /// @throws NumericalError  conjugate gradients did not come near a solution
+  std::vector<Vec3> extend(std::span<const Vec3> given) const { return system_.extend(given); }
 
-  using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-  const Matrix& stiffness() const { return stiffness_; }  ///< symmetric, positive definite
+  const ExtensionSystem::Matrix& stiffness() const { return system_.stiffness(); }
 
  private:
-  Matrix stiffness_;  // unknown by unknown
-  Matrix coupling_;   // unknown by given
-  std::vector<SlidingRow> sliding_;
+  ExtensionSystem system_;
 };
 
 }  // namespace roughmesh::detail
