@@ -72,7 +72,7 @@ detail::HarmonicExtension rebuild(const Mesh& mesh, const Surface& surface) {
   return {mesh.nodes, tetrahedra, roles};
 }
 
-double product_seconds(const detail::HarmonicExtension::Matrix& stiffness) {
+double product_seconds(const detail::ExtensionSystem::Matrix& stiffness) {
   constexpr int products = 20;
   Eigen::VectorXd x = Eigen::VectorXd::Ones(stiffness.cols()), y = x;
   return seconds([&] {
