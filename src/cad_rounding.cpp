@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -78,20 +79,23 @@ Rounding plan_rounding(const Mesh& mesh, double radius, double angle) {
   const CurveOfEdge curve_of = curves(mesh, surface);
   const EdgeTable edges =
       make_edges({2, surface.face_offsets, surface.face_points}, surface.n_points());
-  Rounding result{.curves = {}, .radius = radius};
+  std::vector<double> turned;
+  std::set<Tag> sharp;
   for (Index e = 0; e < edges.size(); ++e) {
-    const double turned = turn(surface, edges.edge(e)[0].face, edges.edge(e)[1].face);
+    turned.push_back(turn(surface, edges.edge(e)[0].face, edges.edge(e)[1].face));
     const auto curve = curve_of.find(edges.points[e]);
-    if (curve == curve_of.end() || std::abs(turned) <= angle) continue;
+    if (curve != curve_of.end() && std::abs(turned.back()) > angle) sharp.insert(curve->second);
+  }
+  Rounding result{.curves = {sharp.begin(), sharp.end()}, .radius = radius};
+  for (Index e = 0; e < edges.size(); ++e) {  // all of a curve is rounded, if a part of it is sharp
+    const auto curve = curve_of.find(edges.points[e]);
+    if (curve == curve_of.end() || !sharp.contains(curve->second)) continue;
     const double length =
         (surface.points[edges.points[e][1]] - surface.points[edges.points[e][0]]).norm();
-    const double change = -radius * radius * length * (std::tan(turned / 2) - turned / 2);
-    result.curves.push_back(curve->second);
+    const double change = -radius * radius * length * (std::tan(turned[e] / 2) - turned[e] / 2);
     result.volume_change += change;
     result.volume_turned += std::abs(change);
   }
-  std::sort(result.curves.begin(), result.curves.end());
-  result.curves.erase(std::unique(result.curves.begin(), result.curves.end()), result.curves.end());
   return result;
 }
 

@@ -121,6 +121,9 @@ If (#rounded() != #solids())
   Printf("{} failed");
   Exit;
 EndIf
+For i In {{0:#labelled()-1}}
+  Physical Volume(Str(labels(i+1))) += {{labelled(i)}};
+EndFor
 Printf("{} %.17g %.17g", before, after);
 )",
                      fmt::join(rounding.curves, ", "), rounding.radius, rounded_mark, rounded_mark);

@@ -174,7 +174,8 @@ ElementResult compare(const BlockView& view, Index element) {
 
 // What curved sides add: elements of order 2 have to be positive everywhere (docs/math.md, eq. 61),
 // those that are not in the input as far as their corners tell.
-ElementResult compare_curved(const BlockView& view, Index element, const ElementResult& corners) {
+ElementResult compare_curved(const BlockView& view, Index element, const ElementResult& corners,
+                             bool is_new) {
   const double sign = corners.sign;
   const detail::ElementOrientation orientation = view.orientation(element, sign);
   const auto at = [&](std::span<const Vec3> positions) {
@@ -186,7 +187,7 @@ ElementResult compare_curved(const BlockView& view, Index element, const Element
   if (!after) return result;
   result.quality = std::min(result.quality, after->value);
   if (after->is_positive) return result;
-  const std::optional<detail::LeastValue> before = at(view.original);
+  const auto before = is_new ? std::nullopt : at(view.original);
   result.curved_inverted_before = before && !before->is_positive;
   if (!result.curved_inverted_before) result.inverted = true;
   return result;
@@ -228,17 +229,17 @@ struct Summary {
   }
 };
 
-// Where to look.
-enum class Depth : std::uint8_t { corners, curves };
+// Where to look; new curved elements have no former place that would excuse them.
+enum class Depth : std::uint8_t { corners, curves, new_curves };
 
 Summary summarize_range(const BlockView& view, std::size_t block, std::size_t begin,
                         std::size_t end, Depth depth) {
   Summary summary;
-  const bool shows_curves = depth == Depth::curves && view.shows_curves();
+  const bool shows_curves = depth != Depth::corners && view.shows_curves();
   for (std::size_t i = begin; i < end; ++i) {
     const auto element = static_cast<Index>(i);
     ElementResult result = compare(view, element);
-    if (shows_curves) result = compare_curved(view, element, result);
+    if (shows_curves) result = compare_curved(view, element, result, depth == Depth::new_curves);
     summary.n_inverted_before += result.curved_inverted_before;
     summary.min_quality = std::min(summary.min_quality, result.quality);
     if (!result.inverted) continue;
@@ -419,7 +420,7 @@ MeshCheck check_mesh(const Mesh& mesh, std::span<const Vec3> moved, const Enclos
 
 MeshCheck check_remeshed(const Mesh& remeshed, std::span<const Vec3> moved,
                          const Enclosure& enclosure) {
-  MeshCheck check = check_mesh(remeshed, remeshed.nodes);
+  MeshCheck check = check_to(Depth::new_curves, remeshed, remeshed.nodes);
   add_volume_error(enclosure.volume_error_inside(remeshed, moved), check);
   return check;
 }

@@ -77,6 +77,10 @@ void check_intersections(const CheckedFaces& faces) {
   const std::vector<std::uint8_t> all(faces.before.size(), 1);
   const FacesInPlace here{faces, faces.before, each, 2};
   const FoundPairs found = find_intersections(here, here, all);  // that did not move
+  if (!found.is_complete && found.in_input.empty())
+    throw CheckError(
+        "so many triangles around the volume to mesh lie upon each other that they cannot be "
+        "checked: it cannot be filled; repair the surface");
   if (found.in_input.empty()) return;
   const FacePair& first = found.in_input.front();
   const FaceSource &a = faces.sources[first.a], &b = faces.sources[first.b];

@@ -24,7 +24,20 @@ struct Entity {
   Tag tag = 0;
   std::vector<Tag> groups;
   std::vector<const ElementBlock*> blocks;
+  const PeriodicLink* link = nullptr;  ///< of an entity without elements: one that names it
 };
+
+// Readers want to know the entities that periodic links name, points and curves among them, which
+// need not have elements.
+void add_linked_entities(const Mesh& mesh, std::set<std::pair<int, Tag>>& taken,
+                         std::vector<Entity>& entities) {
+  for (const PeriodicLink& link : mesh.periodic_links)
+    for (const Tag tag : {link.entity, link.master_entity})
+      if (taken.insert({link.dimension, tag}).second)
+        entities.push_back({link.dimension, tag, {}, {}, &link});
+  std::stable_sort(entities.begin(), entities.end(),
+                   [](const Entity& a, const Entity& b) { return a.dimension < b.dimension; });
+}
 
 std::vector<Entity> list_entities(const Mesh& mesh) {
   std::map<std::tuple<int, Tag, std::vector<Tag>>, std::vector<const ElementBlock*>> blocks;
@@ -35,14 +48,20 @@ std::vector<Entity> list_entities(const Mesh& mesh) {
     Tag& tag = largest[static_cast<std::size_t>(dim)];
     tag = std::max(tag, block.entity);
   }
+  for (const PeriodicLink& link : mesh.periodic_links) {
+    Tag& tag = largest[static_cast<std::size_t>(link.dimension)];
+    tag = std::max({tag, link.entity, link.master_entity});
+  }
   std::vector<Entity> entities;
   std::set<std::pair<int, Tag>> taken;
   for (const auto& [key, list] : blocks) {
     const auto& [dim, tag, groups] = key;
     const bool is_free = tag > 0 && taken.insert({dim, tag}).second;
     entities.push_back(
-        {dim, is_free ? tag : ++largest[static_cast<std::size_t>(dim)], groups, list});
+        {dim, is_free ? tag : ++largest[static_cast<std::size_t>(dim)], groups, list, nullptr});
+    taken.insert({dim, entities.back().tag});
   }
+  add_linked_entities(mesh, taken, entities);
   return entities;
 }
 
@@ -100,6 +119,10 @@ class Writer {
     Eigen::AlignedBox3d box;
     for (const ElementBlock* block : entity.blocks)
       for (const Index node : block->nodes) box.extend(mesh_->nodes[node]);
+    if (entity.link != nullptr)
+      for (const auto& [slave, master] : entity.link->nodes)
+        box.extend(mesh_->nodes[entity.tag == entity.link->entity ? slave : master]);
+    if (box.isEmpty()) box.extend(Vec3(0, 0, 0));
     ints(entity.tag);
     numbers_.vector(box.min());
     if (entity.dimension > 0) numbers_.vector(box.max());
@@ -114,7 +137,8 @@ class Writer {
     const auto [least, greatest] =
         std::minmax_element(mesh_->node_tags.begin(), mesh_->node_tags.end());
     const std::size_t n = mesh_->nodes.size();
-    const Entity& entity = entities_.back();
+    const Entity& entity = *std::find_if(entities_.rbegin(), entities_.rend(),
+                                         [](const Entity& each) { return !each.blocks.empty(); });
     begin("Nodes");
     sizes(1, n, *least, *greatest);
     end_line();

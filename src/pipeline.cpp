@@ -306,8 +306,9 @@ class Run {
     rough_.mesh = *remeshed.mesh;
     old_nodes_ = std::move(remeshed.old_nodes);
     has_own_elements_ = true;
-    rough_.displacements =
-        on_nodes_of<Vec3>(rough_.mesh, differences(moved, mesh_.nodes), &*old_nodes_, Vec3::Zero());
+    rough_.displacements = on_nodes_of<Vec3>(rough_.mesh, mesh_.nodes, &*old_nodes_, Vec3::Zero());
+    for (std::size_t i = 0; i < old_nodes_->size(); ++i)  // with those that follow on bent edges
+      rough_.displacements[i] = rough_.mesh.nodes[i] - rough_.displacements[i];
     rough_.check = timer_.time(&Timings::check, [&] {
       if (dimension(mesh_) == 3) return check_remeshed(rough_.mesh, moved, enclosure_);
       return check_remeshed(rough_.mesh, rough_.mesh.nodes, Enclosure(rough_.mesh));

@@ -2,6 +2,7 @@
 #include "remesh_volume.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -309,12 +310,27 @@ std::vector<std::uint8_t> VolumeRemesher::regions_at(
   return is_touched;
 }
 
+namespace {
+
+/// Where nothing moved that a volume touches, there is nothing to mesh anew.
+RemeshedVolume keep_all(const Mesh& mesh, std::span<const Vec3> positions) {
+  auto same = std::make_shared<Mesh>(mesh);
+  same->nodes.assign(positions.begin(), positions.end());
+  std::vector<Index> all(positions.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  return {std::move(same), std::move(all)};
+}
+
+}  // namespace
+
 RemeshedVolume VolumeRemesher::remesh(std::span<const Vec3> positions) const {
   Flags has_moved(mesh_.nodes.size(), 0);
   for (const RegionFace& face : regions_.faces)
     for (const Index node : face.face.all())
       has_moved[node] = positions[node] != mesh_.nodes[node] ? 1 : 0;
   const Flags is_touched = regions_at(has_moved);
+  if (std::find(is_touched.begin(), is_touched.end(), 1) == is_touched.end())
+    return keep_all(mesh_, positions);
   const Touched touched{mesh_, regions_, is_touched};
   check_regions(touched);
   const std::vector<Vec3> places = with_followers(touched, positions);

@@ -355,12 +355,22 @@ std::vector<std::uint8_t> moving_nodes(const RoughSurfaces& rough, const Mesh& m
 }
 
 std::optional<Vec3> period_of(const RoughSurfaces& rough) {
+  std::optional<Vec3> period;
   for (const SurfacePlan& plan : rough.plans) {
     const std::vector<double>& p = plan.request.period;
-    if (plan.request.distance && is_periodic(*plan.request.distance) && p.size() == 3)
-      return Vec3(p[0], p[1], p[2]);
+    if (!plan.request.distance || !is_periodic(*plan.request.distance) || p.size() != 3) continue;
+    if (!period) period = Vec3::Zero();
+    for (int axis = 0; axis < 3; ++axis) {
+      double& known = (*period)[axis];
+      const double given = p[static_cast<std::size_t>(axis)];
+      if (known > 0 && given > 0 && known != given)
+        throw InputError(
+            fmt::format("--period: {:g} and {:g} along one axis; a mesh has one period along each",
+                        known, given));
+      known = std::max(known, given);
+    }
   }
-  return std::nullopt;
+  return period;
 }
 
 std::vector<double> heights_of(const SurfacePlan& surface, std::span<const double> field_heights) {

@@ -101,6 +101,9 @@ TEST_F(CadRounding, PartsKeepTheirNames) {
                          [](const PhysicalGroup& group) { return group.dimension == 3; });
   };
   EXPECT_EQ(of_volumes(mesh), of_volumes(sharp));
+  ASSERT_GT(of_volumes(sharp), 0);  // gmsh labels the solids that it exports
+  for (const ElementBlock& block : mesh.blocks)
+    EXPECT_EQ(block.physical_groups.size(), dimension(block.type.shape) == 3 ? 1u : 0u);
   EXPECT_LT(volume_of(mesh), 2 - 0.1 * 24 * 0.01 * (1 - pi / 4));
 }
 

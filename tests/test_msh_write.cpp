@@ -146,6 +146,21 @@ TEST(WriteMsh, GivesRepeatedListingsNumbersOfTheirOwn) {
   EXPECT_NE(bytes.find("\n14 2 2 9 1 "), std::string::npos) << bytes;
 }
 
+// Gmsh loses its place in the links where one names an entity that the file does not list.
+TEST(WriteMsh, ListsThePointsAndCurvesThatLinksName) {
+  Mesh mesh = test::plate(2);  // nodes 0 and 2 are ends of the side y = 0
+  mesh.periodic_links = {{0, 9, 7, {}, {{2, 0}}}, {1, 5, 6, {}, {{2, 0}, {5, 3}}}};
+  const test::TemporaryFolder folder;
+  write_mesh(mesh, folder / "linked.msh",
+             {.fields = {}, .format = MeshFormat::msh4, .encoding = Encoding::text});
+  const std::string text = test::read_bytes(folder / "linked.msh");
+  const std::size_t begin = text.find("$Entities\n");
+  ASSERT_NE(begin, text.npos);
+  EXPECT_EQ(text.substr(begin + 10, 8), "2 2 1 0\n");
+  EXPECT_NE(text.find("\n7 0 0 0 0", begin), text.npos);  // place of node 0, no group
+  EXPECT_EQ(read_mesh(folder / "linked.msh").periodic_links.size(), 2u);
+}
+
 TEST(WriteMsh, RefusesNumbersThatTheVersionCannotHold) {
   const test::TemporaryFolder folder;
   Mesh mesh = test::plate(1);

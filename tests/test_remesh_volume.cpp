@@ -203,6 +203,15 @@ TEST(RemeshVolume, EqualInputGivesEqualMeshes) {
 }
 
 // Files whose elements all run the other way round are common; solvers have adapted to them.
+TEST(RemeshVolume, WhereNothingMovesTheMeshStays) {
+  const Mesh mesh = ball_in_two_boxes();
+  const Surface surface = select_surface(mesh, {.groups = {"surface"}});
+  const RemeshedVolume same = VolumeRemesher(mesh, test::only(surface), {}).remesh(mesh.nodes);
+  EXPECT_EQ(same.mesh->nodes, mesh.nodes);
+  EXPECT_EQ(n_elements(*same.mesh), n_elements(mesh));
+  EXPECT_EQ(same.old_nodes.size(), mesh.nodes.size());
+}
+
 TEST(RemeshVolume, ElementsKeepTheirOrientation) {
   NEEDS_GMSH;
   Mesh turned = test::ball_in_box(8);

@@ -96,7 +96,8 @@ MeshCheck check_mesh(const Mesh& mesh, std::span<const Vec3> moved);
 MeshCheck check_mesh(const Mesh& mesh, std::span<const Vec3> moved, const Enclosure& enclosure);
 
 /// Of a mesh with new volume elements inside the boundary of the input: quality of all elements,
-/// and that volumes add up. Elements have no former place here, so that none is found inverted.
+/// and that volumes add up. Elements have no former place here, so that of straight ones none is
+/// found inverted; curved ones have to be positive everywhere.
 /// @param moved  as for Enclosure::volume_error_inside
 MeshCheck check_remeshed(const Mesh& remeshed, std::span<const Vec3> moved,
                          const Enclosure& enclosure);
