@@ -47,11 +47,21 @@ const char* const text4 =
     "$Elements\n1 1 1 1\n2 1 2 1\n1 1 2 3\n$EndElements\n"
     "$Periodic\n1\n1 1 2\n0\n1\n2 1\n$EndPeriodic\n";
 
-void add_text2(std::vector<Case>& cases) {
-  const auto add = [&](const std::string& name, const std::string& what, const std::string& by,
-                       const std::string& message, Kind kind = Kind::format_error) {
-    cases.push_back({"msh2_" + name, "a.msh", replaced(text2, what, by), kind, message});
-  };
+/// Adds cases that replace a part of the file of version 2.2.
+class Text2Cases {
+ public:
+  explicit Text2Cases(std::vector<Case>& cases) : cases_(cases) {}
+
+  void operator()(const std::string& name, const std::string& what, const std::string& by,
+                  const std::string& message, Kind kind = Kind::format_error) const {
+    cases_.push_back({"msh2_" + name, "a.msh", replaced(text2, what, by), kind, message});
+  }
+
+ private:
+  std::vector<Case>& cases_;
+};
+
+void add_text2_nodes(const Text2Cases& add) {
   add("count_too_large", "$Nodes\n3", "$Nodes\n4", ":13: $Nodes: expected a whole number");
   add("count_too_small", "$Nodes\n3", "$Nodes\n2", ":12: $Nodes: expected $EndNodes");
   add("count_huge", "$Nodes\n3", "$Nodes\n2000000000", "do not fit");
@@ -76,6 +86,9 @@ void add_text2(std::vector<Case>& cases) {
       "$Elements: stands before $Nodes");
   add("end_of_nodes_missing", "$EndNodes\n", "", "expected $EndNodes, found \"$Elements\"");
   add("end_of_nodes_misspelt", "$EndNodes", "$EndNods", "expected $EndNodes");
+}
+
+void add_text2_elements(const Text2Cases& add) {
   add("element_dangling", "5 1 1 2 3", "5 1 1 2 4", ":16: $Elements: node 4 is not in $Nodes");
   add("element_dangling_negative", "5 1 1 2 3", "5 1 1 2 -3", "node -3 is not in $Nodes");
   add("element_dangling_far", "5 1 1 2 3", "5 1 1 2 9223372036854775807", "is not in $Nodes");
@@ -90,6 +103,9 @@ void add_text2(std::vector<Case>& cases) {
       Kind::input_error);
   add("element_count_too_large", "$Elements\n1", "$Elements\n2", "$Elements: ");
   add("element_count_too_small", "$Elements\n1", "$Elements\n0", "expected $EndElements");
+}
+
+void add_text2_sections(const Text2Cases& add) {
   add("second_nodes", "$Periodic", "$Nodes\n1\n1 0 0 0\n$EndNodes\n$Periodic", "a second $Nodes");
   add("second_elements", "$Periodic", "$Elements\n0\n$EndElements\n$Periodic",
       "a second $Elements");
@@ -117,6 +133,9 @@ void add_text2(std::vector<Case>& cases) {
   add("section_without_name", "$EndPeriodic\n", "$EndPeriodic\n$\n", "without a name");
   add("parametric_nodes", "$Nodes\n3", "$ParametricNodes\n3", "Mesh.SaveParametric",
       Kind::input_error);
+}
+
+void add_text2_headers(const Text2Cases& add) {
   add("version_1", "2.2 0 8", "1.0 0 8", "gmsh -save", Kind::input_error);
   add("version_3", "2.2 0 8", "3 0 8", "MSH version 3", Kind::input_error);
   add("version_4_0", "2.2 0 8", "4.0 0 8", "MSH version 4.0", Kind::input_error);
@@ -289,7 +308,10 @@ void add_others(std::vector<Case>& cases) {
 
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
-  add_text2(cases);
+  add_text2_nodes(Text2Cases(cases));
+  add_text2_elements(Text2Cases(cases));
+  add_text2_sections(Text2Cases(cases));
+  add_text2_headers(Text2Cases(cases));
   add_text4(cases);
   add_truncations(cases);
   add_binary(cases);
