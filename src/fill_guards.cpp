@@ -2,7 +2,6 @@
 #include "fill_guards.hpp"
 
 #include <algorithm>
-#include <map>
 #include <numeric>
 #include <utility>
 

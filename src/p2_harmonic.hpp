@@ -39,7 +39,7 @@ class QuadraticExtension {
 
   /// @param given  n_given offsets, finite
   /// @return       n_unknown offsets; the same bits on any number of threads
-  /// @throws NumericalError  conjugate gradients did not converge
+  /// @throws NumericalError  conjugate gradients did not come near a solution
   std::vector<Vec3> extend(std::span<const Vec3> given) const { return system_.extend(given); }
 
   const ExtensionSystem::Matrix& stiffness() const { return system_.stiffness(); }

@@ -72,7 +72,7 @@ class VolumeMover {
   const std::vector<Index>& wall_nodes() const;
 
   /// @param displacements  one vector per node of moved_nodes(surfaces), in its order
-  /// @throws NumericalError  conjugate gradients did not converge
+  /// @throws NumericalError  conjugate gradients did not come near a solution
   MovedVolume move(std::span<const Vec3> displacements) const;
 
   struct Plan;  ///< the assembled system; defined by the source
