@@ -66,14 +66,14 @@ class Patch {
     const auto [first, end] = fullest_cell(sorted, detail::cell_points(3) / axis.inverse_spacing());
     places_.assign(&sorted.places()[first], &sorted.places()[first] + (end - first));
     for (std::uint32_t i = 0; i < places_.size(); ++i) members_.push_back(i);
-    heights_.resize(places_.size());
+    sums_.resize(places_.size());
     make_box();
   }
 
   Patch(const Patch&) = delete;
   Patch& operator=(const Patch&) = delete;
 
-  void gather() { detail::gather(axes_, box_, 1, members_, places_.data(), heights_.data()); }
+  void gather() { detail::gather(axes_, box_, members_, places_.data(), sums_.data()); }
 
   std::size_t n_points() const { return places_.size(); }
 
@@ -106,7 +106,7 @@ class Patch {
   std::vector<Vec3> places_;
   std::vector<std::uint32_t> members_;
   hwy::AlignedFreeUniquePtr<double[]> values_;
-  std::vector<double> heights_;
+  std::vector<double> sums_;
   detail::LatticeBox box_;
 };
 

@@ -45,6 +45,7 @@ bool is_face(const Mesh& mesh, const ElementBlock& block, int face_dimension) {
 
 std::vector<Face> faces_of(const Mesh& mesh, int face_dimension) {
   std::vector<Face> faces;
+  faces.reserve(static_cast<std::size_t>(n_elements(mesh, face_dimension)));
   for (const ElementBlock& block : mesh.blocks)
     for (Index e = 0; is_face(mesh, block, face_dimension) && e < block.size(); ++e)
       add_facets(block.type, block.element(e), {block.tags[e], block.type.shape, false}, faces);
@@ -137,6 +138,11 @@ void add_facets(CheckedFaces& faces) {
     faces.facets.push_back({a, b, c});
     faces.face_of_facet.push_back(static_cast<Index>(face));
   };
+  const auto n_quadrangles = static_cast<std::size_t>(std::count_if(
+      faces.corners.begin(), faces.corners.end(), [](const auto& face) { return face[3] >= 0; }));
+  faces.facets.reserve(faces.corners.size() + 3 * n_quadrangles);
+  faces.face_of_facet.reserve(faces.facets.capacity());
+  faces.first_facet.reserve(faces.corners.size() + 1);
   for (std::size_t f = 0; f < faces.corners.size(); ++f) {
     const auto [a, b, c, d] = faces.corners[f];
     faces.first_facet.push_back(static_cast<Index>(faces.facets.size()));
@@ -149,10 +155,9 @@ void add_facets(CheckedFaces& faces) {
   faces.first_facet.push_back(static_cast<Index>(faces.facets.size()));
 }
 
-}  // namespace
-
-CheckedFaces collect_faces(const Mesh& mesh, int dimension,
-                           std::span<const std::uint8_t> left_out) {
+// Corners, sources and nodes, along the curve.
+CheckedFaces distinct_faces(const Mesh& mesh, int dimension,
+                            std::span<const std::uint8_t> left_out) {
   std::vector<Face> faces = faces_of(mesh, dimension);
   if (!left_out.empty())
     std::erase_if(faces, [&](const Face& face) {
@@ -162,8 +167,19 @@ CheckedFaces collect_faces(const Mesh& mesh, int dimension,
   drop_repetitions(faces);
   CheckedFaces result;
   result.dimension = dimension;
+  result.corners.reserve(faces.size());
+  result.sources.reserve(faces.size());
   std::vector<Index> point_of_node(mesh.nodes.size(), -1);
   for (const Index f : along_curve(faces, mesh)) add_face(faces[f], point_of_node, result);
+  return result;
+}
+
+}  // namespace
+
+CheckedFaces collect_faces(const Mesh& mesh, int dimension,
+                           std::span<const std::uint8_t> left_out) {
+  CheckedFaces result = distinct_faces(mesh, dimension, left_out);
+  result.before.reserve(result.nodes.size());
   for (const Index node : result.nodes) result.before.push_back(mesh.nodes[node]);
   result.joined = join(result.before);
   result.same_place = first_with_key(result.corners.size(),

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "all_points.hpp"
 #include "image_sum.hpp"
 #include "parallel.hpp"
 
@@ -36,13 +37,6 @@ Vec3 extent(std::span<const Vec3> places) {
   return box.sizes();
 }
 
-bool is_all(std::span<const Index> points, Index n) {
-  if (static_cast<Index>(points.size()) != n) return false;
-  for (Index i = 0; i < n; ++i)
-    if (points[i] != i) return false;
-  return true;
-}
-
 }  // namespace
 
 Correlation::Correlation(std::vector<Vec3> places, const Autocorrelation& autocorrelation,
@@ -61,7 +55,7 @@ double Correlation::image_sum(const Vec3& x, const Vec3& y) const { return image
 
 Correlation Correlation::among(std::span<const Index> points) const {
   Correlation result = *this;
-  if (is_all(points, n_points())) return result;
+  if (detail::is_all(points, n_points())) return result;
   std::vector<Vec3> places;
   places.reserve(points.size());
   for (const Index point : points) {

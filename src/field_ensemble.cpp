@@ -26,6 +26,12 @@ std::vector<Index> sampled_positions(const SurfacePlan& plan, const PeriodicPart
   return positions;
 }
 
+bool is_last_of_its_field(std::size_t plan, std::span<const SurfacePlan> plans) {
+  const auto later = plans.subspan(plan + 1);
+  return std::none_of(later.begin(), later.end(),
+                      [&](const SurfacePlan& other) { return other.field == plans[plan].field; });
+}
+
 }  // namespace
 
 void add_citations(std::vector<std::string>& works, std::vector<std::string> more) {
@@ -55,8 +61,11 @@ std::vector<std::vector<double>> FieldEnsemble::heights(std::uint64_t realizatio
   for (std::size_t f = 0; f < samplers_.size(); ++f)
     fields.push_back(
         expand(rough_.fields[f].partners, samplers_[f].heights(seeds_[f], realization)));
-  for (const SurfacePlan& plan : rough_.plans)
-    result.push_back(heights_of(plan, fields[plan.field]));
+  for (std::size_t s = 0; s < rough_.plans.size(); ++s) {
+    std::vector<double>& field = fields[rough_.plans[s].field];
+    const bool is_last = is_last_of_its_field(s, rough_.plans);
+    result.push_back(heights_of(rough_.plans[s], is_last ? std::move(field) : field));
+  }
   return result;
 }
 

@@ -64,14 +64,11 @@ class LatticeField final : public FieldMethod {
   }
 
   std::vector<double> heights(const NoiseStream& stream) const override {
-    std::vector<double> sorted(places_.size(), 0.0), heights(places_.size());
+    std::vector<double> heights(places_.size(), 0.0);
     for (std::size_t k = 0; k < levels_.size(); ++k)
-      add_level(levels_[k], stream, places_, n_skipped_, static_cast<int>(k), sorted);
-    coarse_.add(stream, places_, sorted);
-    add_nugget(stream, sorted);
-    parallel_for(sorted.size(), 8192, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) heights[places_.order()[i]] = sorted[i];
-    });
+      add_level(levels_[k], stream, places_, n_skipped_, static_cast<int>(k), heights);
+    coarse_.add(stream, places_, heights);
+    add_nugget(stream, heights);
     return heights;
   }
 
@@ -79,7 +76,7 @@ class LatticeField final : public FieldMethod {
     std::vector<double> result(pairs.size());
     parallel_for(pairs.size(), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p)
-        result[p] = covariance(position_[pairs[p].first], position_[pairs[p].second]);
+        result[p] = covariance(position(pairs[p].first), position(pairs[p].second));
     });
     return result;
   }
@@ -125,9 +122,6 @@ class LatticeField final : public FieldMethod {
     lost_variance_ = terms.lost_variance;
     set_levels(terms);
     mixture_ = std::move(terms.mixture);
-    position_.resize(places_.size());
-    for (std::size_t i = 0; i < places_.size(); ++i)
-      position_[places_.order()[i]] = static_cast<std::uint32_t>(i);
     require_digits(options.tolerance);
   }
 
@@ -159,6 +153,12 @@ class LatticeField final : public FieldMethod {
         largest_coordinate_, correlation().autocorrelation().length()));
   }
 
+  /// Among the sorted places.
+  std::size_t position(Index point) const {
+    return places_.position(static_cast<std::uint32_t>(point),
+                            space_(correlation().places()[static_cast<std::size_t>(point)]));
+  }
+
   std::size_t n_skipped(std::size_t i) const { return n_skipped_.empty() ? 0 : n_skipped_[i]; }
 
   double nugget_share_of(std::size_t i) const {
@@ -179,7 +179,8 @@ class LatticeField final : public FieldMethod {
       for (std::size_t i = begin; i < end; ++i) {
         const double share = nugget_share_of(i);
         if (share > 0)
-          heights[i] += std::sqrt(share) * Nugget::noise(stream, nugget_.key(places_.places()[i]));
+          heights[places_.order()[i]] +=
+              std::sqrt(share) * Nugget::noise(stream, nugget_.key(places_.places()[i]));
       }
     });
   }
@@ -204,7 +205,6 @@ class LatticeField final : public FieldMethod {
   std::vector<LatticeLevel> levels_;     ///< ascending in scale; places sum each by itself
   CoarseLevels coarse_;                  ///< the rest
   std::vector<std::uint8_t> n_skipped_;  ///< levels that a sorted place does without; empty: none
-  std::vector<std::uint32_t> position_;  ///< of each point among the sorted places
   ScaleMixture mixture_;
   double lost_variance_ = 0;
   bool has_cells_of_all_meshes_ = true;

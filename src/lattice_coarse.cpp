@@ -180,7 +180,7 @@ class CoarseLevels::Descent {
                    ? levels_.interpolation((places_.places()[i][static_cast<int>(a)] - corner[a]) /
                                            levels_.edge(0))
                    : NodeWeights{1.0};
-      heights_[i] += interpolate(w, values.data(), {nx, ny, nz});
+      heights_[places_.order()[i]] += interpolate(w, values.data(), {nx, ny, nz});
     }
   }
 

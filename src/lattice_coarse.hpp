@@ -37,6 +37,7 @@ class CoarseLevels {
   bool empty() const { return levels_.empty(); }
   std::span<const LatticeLevel> levels() const { return levels_; }
 
+  /// @param heights  of the places, in their order before sorting
   void add(const NoiseStream& stream, const SortedPlaces& places, std::span<double> heights) const;
 
   /// Covariance that add() gives two places.

@@ -142,8 +142,8 @@ HWY_INLINE double sum_at(Columns columns, const double* wz, std::ptrdiff_t n_vec
   return sum;
 }
 
-void gather_members(const std::array<LatticeAxis, 3>& axes, const LatticeBox& box, double factor,
-                    std::span<const std::uint32_t> members, const Vec3* places, double* heights) {
+void gather_members(const std::array<LatticeAxis, 3>& axes, const LatticeBox& box,
+                    std::span<const std::uint32_t> members, const Vec3* places, double* sums) {
   const std::size_t n_lanes = hn::Lanes(Lanes());
   std::array<std::array<double, gather_lanes>, 3> x;
   std::array<AxisBatch, 3> batch;
@@ -167,7 +167,7 @@ void gather_members(const std::array<LatticeAxis, 3>& axes, const LatticeBox& bo
                             &batch[1].weight[lane],
                             axes[0].n_points(),
                             axes[1].n_points()};
-      heights[members[m + lane]] += factor * sum_at(columns, z.weight.data(), n_vectors);
+      sums[m + lane] = sum_at(columns, z.weight.data(), n_vectors);
     }
   }
 }
@@ -192,9 +192,9 @@ AxisWeights kernel_weights(const LatticeAxis& axis, double x) {
   return result;
 }
 
-void gather(const std::array<LatticeAxis, 3>& axes, const LatticeBox& box, double factor,
-            std::span<const std::uint32_t> members, const Vec3* places, double* heights) {
-  HWY_DYNAMIC_DISPATCH(gather_members)(axes, box, factor, members, places, heights);
+void gather(const std::array<LatticeAxis, 3>& axes, const LatticeBox& box,
+            std::span<const std::uint32_t> members, const Vec3* places, double* sums) {
+  HWY_DYNAMIC_DISPATCH(gather_members)(axes, box, members, places, sums);
 }
 
 }  // namespace roughmesh::detail

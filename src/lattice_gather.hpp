@@ -51,9 +51,8 @@ constexpr std::int64_t first_of_column(std::int64_t point) {
   return point - (point % gather_lanes + gather_lanes) % gather_lanes;
 }
 
-/// heights[i] += factor times the sum of the box under the kernel at places[i], for each i of
-/// `members`.
-void gather(const std::array<LatticeAxis, 3>& axes, const LatticeBox& box, double factor,
-            std::span<const std::uint32_t> members, const Vec3* places, double* heights);
+/// sums[m] = sum of the box under the kernel at places[members[m]], for each m.
+void gather(const std::array<LatticeAxis, 3>& axes, const LatticeBox& box,
+            std::span<const std::uint32_t> members, const Vec3* places, double* sums);
 
 }  // namespace roughmesh::detail

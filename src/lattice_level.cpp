@@ -78,6 +78,7 @@ struct Workspace {
   std::vector<std::int32_t> low_line, high_line;  ///< the same, of members along one line
   std::vector<NoiseRun> runs;
   BoxValues values;
+  std::vector<double> sums;  ///< of each member
 };
 
 using Indices = std::array<std::int64_t, 3>;
@@ -123,8 +124,11 @@ class CellSum {
     mark_columns();
     make_runs();
     noise.fill(work_.runs);
-    gather(level_.axes, box_, std::sqrt(level_.weight), work_.members, places.places().data(),
-           heights.data());
+    work_.sums.resize(work_.members.size());
+    gather(level_.axes, box_, work_.members, places.places().data(), work_.sums.data());
+    const double factor = std::sqrt(level_.weight);
+    for (std::size_t m = 0; m < work_.members.size(); ++m)
+      heights[places.order()[work_.members[m]]] += factor * work_.sums[m];
   }
 
  private:

@@ -44,7 +44,8 @@ std::vector<LatticeLevel> make_levels(std::span<const MixtureTerm> terms, const 
 /// the larger the cell, the less often neighbours make the same noise.
 constexpr double cell_points(int n_axes) { return n_axes == 3 ? 72 : n_axes == 2 ? 128 : 4096; }
 
-/// Adds the level to the heights of the places i with n_skipped[i] <= number.
+/// Adds the level to the heights, in the order before sorting, of the sorted places i with
+/// n_skipped[i] <= number.
 void add_level(const LatticeLevel& level, const NoiseStream& stream, const SortedPlaces& places,
                std::span<const std::uint8_t> n_skipped, int number, std::span<double> heights);
 

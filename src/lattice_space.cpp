@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <tuple>
 
 #include "morton.hpp"
@@ -91,21 +92,32 @@ SortedPlaces::SortedPlaces(std::vector<Vec3> places, double cell) {
   const double extent = std::max(box.sizes().maxCoeff(), 0x1p-20 * cell);
   quantum_ = cell * std::exp2(std::ceil(std::log2(extent / cell)) - 19);
   constexpr double block = 0x1p20;
-  Vec3 base = (box.min() / quantum_ / block).array().floor() * block;
+  base_ = (box.min() / quantum_ / block).array().floor() * block;
   codes_.resize(places.size());
   parallel_for(places.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Vec3 number = (places[i] / quantum_).array().floor() - base.array();
-      codes_[i] = morton_code(static_cast<std::uint64_t>(number.x()),
-                              static_cast<std::uint64_t>(number.y()),
-                              static_cast<std::uint64_t>(number.z()));
-    }
+    for (std::size_t i = begin; i < end; ++i) codes_[i] = code(places[i]);
   });
   const std::vector<Index> order = morton_order(codes_);
   order_.assign(order.begin(), order.end());
   codes_ = in_order(codes_, order_);
   sort_within_cells(places, codes_, order_);
   places_ = in_order(places, order_);
+}
+
+std::uint64_t SortedPlaces::code(const Vec3& place) const {
+  const Vec3 number = (place / quantum_).array().floor() - base_.array();
+  return morton_code(static_cast<std::uint64_t>(number.x()), static_cast<std::uint64_t>(number.y()),
+                     static_cast<std::uint64_t>(number.z()));
+}
+
+std::size_t SortedPlaces::position(std::uint32_t number, const Vec3& place) const {
+  const std::uint64_t cell = code(place);
+  const auto is_before = [&](std::size_t i) {
+    const Vec3& x = places_[i];
+    return std::tie(codes_[i], x[0], x[1], x[2], order_[i]) <
+           std::tie(cell, place[0], place[1], place[2], number);
+  };
+  return *std::ranges::partition_point(std::views::iota(std::size_t{0}, size()), is_before);
 }
 
 int SortedPlaces::n_doublings(double edge) const {

@@ -44,6 +44,9 @@ class SortedPlaces {
   const std::vector<std::uint32_t>& order() const { return order_; }  ///< number of each before
   std::size_t size() const { return places_.size(); }
 
+  /// Where a place stands, by its number before and its coordinates.
+  std::size_t position(std::uint32_t number, const Vec3& place) const;
+
   /// Places in one cell each, of the largest cells with an edge of at most `largest`, or of the
   /// smallest ones there are.
   std::vector<Range> cells(double largest) const { return cells({0, size()}, largest); }
@@ -55,10 +58,13 @@ class SortedPlaces {
   int n_doublings(double edge) const;
 
  private:
+  std::uint64_t code(const Vec3& place) const;
+
   std::vector<Vec3> places_;
   std::vector<std::uint32_t> order_;
   std::vector<std::uint64_t> codes_;
-  double quantum_ = 1;  ///< edge of the smallest cells
+  double quantum_ = 1;        ///< edge of the smallest cells
+  Vec3 base_ = Vec3::Zero();  ///< number of the first of them along each axis
 };
 
 }  // namespace roughmesh::detail

@@ -322,15 +322,20 @@ std::vector<Index> masters(const PeriodicPartners& partners) {
   return result;
 }
 
-std::vector<double> expand(const PeriodicPartners& partners, std::span<const double> of_masters) {
-  const std::vector<Index> points = masters(partners);
-  if (points.size() != of_masters.size())
-    throw InputError(fmt::format("{} values for {} masters; give one for each", of_masters.size(),
-                                 points.size()));
-  std::vector<double> result(partners.master.size());
-  for (std::size_t k = 0; k < points.size(); ++k) result[points[k]] = of_masters[k];
-  for (std::size_t i = 0; i < result.size(); ++i) result[i] = result[partners.master[i]];
-  return result;
+// In the vector that comes: masters move to their points from the last on.
+std::vector<double> expand(const PeriodicPartners& partners, std::vector<double> values) {
+  const std::vector<Index>& master = partners.master;
+  const auto is_master = [&](std::size_t i) { return master[i] == static_cast<Index>(i); };
+  std::size_t n_masters = 0;
+  for (std::size_t i = 0; i < master.size(); ++i) n_masters += is_master(i) ? 1 : 0;
+  if (n_masters != values.size())
+    throw InputError(
+        fmt::format("{} values for {} masters; give one for each", values.size(), n_masters));
+  values.resize(master.size());
+  for (std::size_t i = master.size(); i-- > 0;)
+    if (is_master(i)) values[i] = values[--n_masters];
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = values[master[i]];
+  return values;
 }
 
 Surface with_partner_normals(const Surface& surface, const PeriodicPartners& partners) {

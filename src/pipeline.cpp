@@ -124,12 +124,11 @@ class Run {
         surface_mover_(timer_.time(&Timings::displace, [&] { return make_surface_mover(); })),
         quality_before_(timer_.time(&Timings::check, [&] { return min_quality(mesh); })),
         enclosure_(timer_.time(&Timings::check, [&] { return Enclosure(mesh); })),
-        checker_(timer_.time(&Timings::check, [&] { return make_checker(); })),
-        walls_checker_(timer_.time(&Timings::check, [&] { return make_walls_checker(); })),
         fields_(surfaces_, options, timer_),
-        targets_(timer_.time(&Timings::audit, [&] { return expect_sq(surfaces_, fields_); })) {
+        targets_(timer_.time(&Timings::audit, [&] { return expect_sq(surfaces_, fields_); })),
+        checker_(timer_.time(&Timings::check, [&] { return make_checker(); })),
+        walls_checker_(timer_.time(&Timings::check, [&] { return make_walls_checker(); })) {
     report_fields();
-    rough_.mesh = mesh;
   }
 
   /// What is returned is lent until the next call.
@@ -394,12 +393,12 @@ class Run {
   const SurfaceMover surface_mover_;
   const double quality_before_;
   const Enclosure enclosure_;
+  const FieldEnsemble fields_;
+  const std::vector<SqTarget> targets_;                // one for each surface
   const SurfaceChecker checker_;                       // of what does not follow
   const std::optional<SurfaceChecker> walls_checker_;  // of all, where walls slide
-  const FieldEnsemble fields_;
-  const std::vector<SqTarget> targets_;          // one for each surface
-  RoughMesh rough_;                              // the latest
-  bool has_own_elements_ = false;                // it is not on those of the input
+  RoughMesh rough_;                                    // the latest
+  bool has_own_elements_ = true;                 // it is not, or not yet, on those of the input
   std::optional<std::vector<Index>> old_nodes_;  // RemeshedVolume::old_nodes, if it is such
 };
 

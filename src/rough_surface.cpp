@@ -11,6 +11,7 @@
 
 #include "roughmesh/field_model.hpp"
 
+#include "all_points.hpp"
 #include "edge_taper.hpp"
 #include "messages.hpp"
 #include "sectors.hpp"
@@ -316,6 +317,15 @@ void apply_edge_rules(RoughSurfaces& rough) {
       apply_taper(rough.surfaces[s], taper.factors[s], taper.sharpest[s], rough.plans[s]);
 }
 
+/// Values of the points of a field at those of a surface: mostly the same ones.
+std::vector<double> at_points(std::vector<double> values, std::span<const Index> points) {
+  if (is_all(points, static_cast<Index>(values.size()))) return values;
+  std::vector<double> result;
+  result.reserve(points.size());
+  for (const Index point : points) result.push_back(values[point]);
+  return result;
+}
+
 }  // namespace
 
 RoughSurfaces prepare_surfaces(const Mesh& mesh, std::span<const Roughness> requests) {
@@ -373,10 +383,10 @@ std::optional<Vec3> period_of(const RoughSurfaces& rough) {
   return period;
 }
 
-std::vector<double> heights_of(const SurfacePlan& surface, std::span<const double> field_heights) {
-  std::vector<double> heights(surface.weights.size());
+std::vector<double> heights_of(const SurfacePlan& surface, std::vector<double> field_heights) {
+  std::vector<double> heights = at_points(std::move(field_heights), surface.field_point);
   for (std::size_t i = 0; i < heights.size(); ++i)
-    heights[i] = surface.weights[i] * surface.request.rms * field_heights[surface.field_point[i]];
+    heights[i] *= surface.weights[i] * surface.request.rms;
   return heights;
 }
 

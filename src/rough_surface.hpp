@@ -74,8 +74,8 @@ std::vector<std::uint8_t> moving_nodes(const RoughSurfaces& rough, const Mesh& m
 std::optional<Vec3> period_of(const RoughSurfaces& rough);
 
 /// Heights z_i = m_i Rq d_i of the points of one surface (docs/math.md, eq. 3 and 43).
-/// @param field_heights  d at the points of its field
-std::vector<double> heights_of(const SurfacePlan& surface, std::span<const double> field_heights);
+/// @param field_heights  d at the points of its field; moved in, their memory is that of the result
+std::vector<double> heights_of(const SurfacePlan& surface, std::vector<double> field_heights);
 
 /// What SurfaceMover needs of each surface.
 std::vector<EdgeOptions> edge_options(const RoughSurfaces& rough);

@@ -17,21 +17,27 @@ constexpr float round_off = 0x1p-23F;
 
 }  // namespace
 
+const TriangleTree::Box TriangleTree::empty = {{infinite, infinite, infinite},
+                                               {-infinite, -infinite, -infinite}};
+
 TriangleTree::TriangleTree(std::span<const Facet> facets, std::span<const Vec3> positions,
                            std::span<const std::uint8_t> is_marked)
     : facets_(facets) {
   const std::size_t n_full = (facets.size() + leaf_size - 1) / leaf_size;
   n_leaves_ = static_cast<std::uint32_t>(std::bit_ceil(std::max<std::size_t>(n_full, 1)));
-  leaves_.resize(n_leaves_);
-  boxes_.resize(2 * std::size_t{n_leaves_});
-  marks_.resize(2 * std::size_t{n_leaves_});
+  leaves_.resize(n_full);
+  // Of the last level those that the level above asks for.
+  const std::size_t n_nodes = n_leaves_ + n_full + n_full % 2;
+  boxes_.assign(std::max<std::size_t>(n_nodes, 2), empty);
+  marks_.resize(boxes_.size());
   choose_scale(positions);
-  parallel_for(n_leaves_, grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(n_full, grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t leaf = begin; leaf < end; ++leaf) fill_leaf(leaf, positions, is_marked);
   });
   for (std::size_t level = n_leaves_ / 2; level > 0; level /= 2)
     parallel_for(level, grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t node = level + begin; node < level + end; ++node) {
+        if (2 * node >= boxes_.size()) break;
         const Box &left = boxes_[2 * node], &right = boxes_[2 * node + 1];
         for (std::size_t k = 0; k < 3; ++k) {
           boxes_[node].low[k] = std::min(left.low[k], right.low[k]);
@@ -58,7 +64,6 @@ void TriangleTree::fill_leaf(std::size_t leaf, std::span<const Vec3> positions,
                              std::span<const std::uint8_t> is_marked) {
   Leaf& boxes = leaves_[leaf];
   Box& whole = boxes_[n_leaves_ + leaf];
-  whole = {{infinite, infinite, infinite}, {-infinite, -infinite, -infinite}};
   for (std::size_t i = 0; i < leaf_size; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
       boxes.low[k][i] = infinite;  // of no facet

@@ -82,6 +82,7 @@ class TriangleTree {
   struct Box {
     std::array<float, 3> low, high;
   };
+  static const Box empty;  ///< of no facet; overlaps none
   /// The boxes of the facets of a leaf, side by side for vector registers.
   struct Leaf {
     std::array<std::array<float, leaf_size>, 3> low, high;
@@ -125,12 +126,13 @@ class TriangleTree {
   }
 
   std::span<const Facet> facets_;
-  std::uint32_t n_leaves_ = 1;       ///< a power of 2; the last ones may be empty
-  Vec3 centre_ = Vec3::Zero();       ///< of all positions
-  double scale_ = 1;                 ///< half of their extent
-  std::vector<Box> boxes_;           ///< node k has the children 2k and 2k + 1; leaves come last
+  std::uint32_t n_leaves_ = 1;  ///< a power of 2; the last ones may have no facet
+  Vec3 centre_ = Vec3::Zero();  ///< of all positions
+  double scale_ = 1;            ///< half of their extent
+  /// Node k has the children 2k and 2k + 1; leaves come last, without the empty ones.
+  std::vector<Box> boxes_;
   std::vector<std::uint8_t> marks_;  ///< per node; of a leaf one bit for each facet
-  std::vector<Leaf> leaves_;
+  std::vector<Leaf> leaves_;         ///< those with facets
 };
 
 }  // namespace roughmesh::detail

@@ -52,7 +52,8 @@ TEST(CoarseLevels, DrawsWhatIsAudited) {
   constexpr int n_realizations = 2000;
   const LatticeSpace space(Distance::euclidean(), 3);
   const CoarseLevels levels = levels_of({{0, 1.5, 0.5}, {1, 3.0, 0.3}, {2, 20.0, 0.2}}, space);
-  const SortedPlaces places(random_places(12, 3), 1.0);
+  const std::vector<Vec3> points = random_places(12, 3);
+  const SortedPlaces places(points, 1.0);
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(12, 12);
   for (std::uint64_t k = 0; k < n_realizations; ++k) {
     Eigen::VectorXd heights = Eigen::VectorXd::Zero(12);
@@ -61,8 +62,8 @@ TEST(CoarseLevels, DrawsWhatIsAudited) {
   }
   for (int i = 0; i < 12; ++i)
     for (int j = 0; j <= i; ++j) {
-      const double c = levels.covariance(places.places()[static_cast<std::size_t>(i)],
-                                         places.places()[static_cast<std::size_t>(j)]);
+      const double c = levels.covariance(points[static_cast<std::size_t>(i)],
+                                         points[static_cast<std::size_t>(j)]);
       EXPECT_NEAR(sum(i, j) / n_realizations, c, 5 * std::sqrt((1 + c * c) / n_realizations));
     }
 }
@@ -73,9 +74,8 @@ TEST(CoarseLevels, AreAFunctionOfThePlaceAlone) {
   const std::vector<Vec3> all = random_places(300, 4);
   const auto heights = [&](const std::vector<Vec3>& some) {
     const SortedPlaces places(some, 1.0);
-    std::vector<double> sorted(some.size(), 0.0), result(some.size());
-    levels.add({1, 2}, places, sorted);
-    for (std::size_t i = 0; i < some.size(); ++i) result[places.order()[i]] = sorted[i];
+    std::vector<double> result(some.size(), 0.0);
+    levels.add({1, 2}, places, result);
     return result;
   };
   const std::vector<double> whole = heights(all);

@@ -76,10 +76,9 @@ void expect_rows(const CoarseCase& c) {
   const std::vector<LatticeLevel> levels = make_levels(terms, space, 1e-2, 0);
   const CoarseLevels coarse(levels, space, c.cell, c.n_stages, 2e-4 * space.n_varying());
 
-  std::vector<Vec3> stretched;
-  for (const Vec3& x : random_places(50)) stretched.push_back(space(x));
-  const SortedPlaces sorted(stretched, c.cell);
-  const std::vector<Vec3>& places = sorted.places();
+  std::vector<Vec3> places;
+  for (const Vec3& x : random_places(50)) places.push_back(space(x));
+  const SortedPlaces sorted(places, c.cell);
   test::NoiseRows rows(levels, places.size());
   for (std::size_t k = 0; k < levels.size(); ++k) {
     const double edge = test::coarse_edge(levels[k].scale, c.cell, c.n_stages);

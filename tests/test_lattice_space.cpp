@@ -110,6 +110,15 @@ TEST(SortedPlaces, AreThePlacesInAnotherOrder) {
   }
 }
 
+// Equal places among them, which only their numbers tell apart.
+TEST(SortedPlaces, AreFoundByNumberAndPlace) {
+  for (const std::vector<Vec3>& cloud : clouds()) {
+    const SortedPlaces sorted(cloud, 0.7);
+    for (std::size_t i = 0; i < sorted.size(); ++i)
+      ASSERT_EQ(sorted.position(sorted.order()[i], sorted.places()[i]), i);
+  }
+}
+
 TEST(SortedPlaces, KeepEqualPlacesTogether) {
   for (const std::vector<Vec3>& cloud : clouds()) {
     const SortedPlaces sorted(cloud, 0.7);

@@ -47,9 +47,10 @@ std::vector<std::array<Index, 2>> periodic_pairs(std::span<const Vec3> points, c
 
 std::vector<Index> masters(const PeriodicPartners& partners);  ///< ascending points
 
-/// Values of the masters, in the order of masters(), for all n points.
+/// Values for all n points.
+/// @param values  of the masters, in the order of masters()
 /// @throws InputError  another number of values than of masters
-std::vector<double> expand(const PeriodicPartners& partners, std::span<const double> of_masters);
+std::vector<double> expand(const PeriodicPartners& partners, std::vector<double> values);
 
 /// The surface with one normal for each point and its images: from the faces of all of them
 /// together (docs/math.md, eq. 31). Rotated points keep their own.
