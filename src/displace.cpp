@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "edge_motion.hpp"
+#include "unfolding.hpp"
 
 namespace roughmesh {
 namespace {
@@ -40,6 +41,19 @@ bool has_no_edges(std::span<const Surface> surfaces, std::span<const EdgeOptions
   const Surface& surface = surfaces.front();
   const bool is_smooth = surface.n_sharp_edges == 0 && surface.n_nonmanifold_edges == 0;
   return options.front().rule == EdgeRule::average || is_smooth;
+}
+
+/// @param nodes  ascending
+std::vector<Index> points_of(const Surface& surface, std::span<const Index> nodes) {
+  std::vector<Index> points;
+  for (std::size_t i = 0; i < surface.nodes.size(); ++i)
+    if (std::binary_search(nodes.begin(), nodes.end(), surface.nodes[i]))
+      points.push_back(surface.point_of_node[i]);
+  return points;
+}
+
+detail::FaceView faces_of(const Surface& surface) {
+  return {surface.dimension, surface.face_offsets, surface.face_points};
 }
 
 }  // namespace
@@ -76,20 +90,25 @@ std::vector<Index> moved_nodes(std::span<const Surface> surfaces) {
 
 struct SurfaceMover::Plan {
   std::span<const Surface> surfaces;
-  std::vector<Index> nodes, fixed;
-  std::unique_ptr<const detail::EdgeMotion> edges;  // none where there are none
+  std::vector<EdgeOptions> options;
+  NodeConstraints constraints;
+  std::vector<Index> nodes, fixed_points = {};
+  std::unique_ptr<const detail::EdgeMotion> edges = nullptr;  // none where there are none
+
+  std::unique_ptr<const detail::EdgeMotion> edge_motion() const {
+    return std::make_unique<const detail::EdgeMotion>(surfaces, options, constraints, nodes);
+  }
 };
 
 SurfaceMover::SurfaceMover(std::span<const Surface> surfaces, std::span<const EdgeOptions> options,
                            const NodeConstraints& constraints) {
   check_options(surfaces, options);
-  auto plan = std::make_unique<Plan>();
-  plan->surfaces = surfaces;
-  plan->nodes = moved_nodes(surfaces);
-  plan->fixed = constraints.fixed;
+  auto plan = std::make_unique<Plan>(
+      Plan{surfaces, {options.begin(), options.end()}, constraints, moved_nodes(surfaces)});
   if (!has_no_edges(surfaces, options, constraints))
-    plan->edges =
-        std::make_unique<const detail::EdgeMotion>(surfaces, options, constraints, plan->nodes);
+    plan->edges = plan->edge_motion();
+  else
+    plan->fixed_points = points_of(surfaces.front(), constraints.fixed);
   plan_ = std::move(plan);
 }
 
@@ -99,20 +118,22 @@ SurfaceMover& SurfaceMover::operator=(SurfaceMover&&) noexcept = default;
 
 const std::vector<Index>& SurfaceMover::nodes() const { return plan_->nodes; }
 
-std::vector<Vec3> SurfaceMover::move(std::span<const std::vector<double>> heights) const {
+MovedSurface SurfaceMover::move(std::span<const std::vector<double>> heights) const {
   const auto& surfaces = plan_->surfaces;
   require_one_each(surfaces, heights.size(), "heights");
   for (std::size_t s = 0; s < surfaces.size(); ++s)
     require_size(surfaces[s], heights[s].size(), "heights");
   if (plan_->edges) return plan_->edges->move(heights);
-  const std::vector<Vec3> at_points = displace(surfaces.front(), heights.front());
-  std::vector<Vec3> at_nodes;
-  at_nodes.reserve(plan_->nodes.size());
-  for (const Index point : surfaces.front().point_of_node) at_nodes.push_back(at_points[point]);
-  for (std::size_t i = 0; i < at_nodes.size(); ++i)
-    if (std::binary_search(plan_->fixed.begin(), plan_->fixed.end(), plan_->nodes[i]))
-      at_nodes[i] = Vec3::Zero();
-  return at_nodes;
+  const Surface& surface = surfaces.front();
+  std::vector<Vec3> at_points = displace(surface, heights.front());
+  for (const Index point : plan_->fixed_points) at_points[point] = Vec3::Zero();
+  if (surface.dimension == 2 &&
+      detail::has_turned_face(faces_of(surface), surface.points, at_points))
+    return plan_->edge_motion()->move(heights);
+  MovedSurface moved;
+  moved.displacements.reserve(plan_->nodes.size());
+  for (const Index point : surface.point_of_node) moved.displacements.push_back(at_points[point]);
+  return moved;
 }
 
 std::vector<Vec3> displace_nodes(std::span<const Surface> surfaces,
@@ -126,7 +147,7 @@ std::vector<Vec3> displace_nodes(std::span<const Surface> surfaces,
     masked[s].weights = heights[s];
     for (double& weight : masked[s].weights) weight = weight != 0 ? 1 : 0;
   }
-  return SurfaceMover(surfaces, masked).move(heights);
+  return SurfaceMover(surfaces, masked).move(heights).displacements;
 }
 
 }  // namespace roughmesh

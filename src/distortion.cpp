@@ -19,10 +19,10 @@ std::size_t n_ranges(std::size_t n) { return (n + simplices_per_range - 1) / sim
 // NaN if one of them is.
 double smaller(double a, double b) { return std::isnan(a) || a <= b ? a : b; }
 
-template <int dim>
-Eigen::Matrix<double, dim, dim> edges(const std::vector<Eigen::Matrix<double, dim, 1>>& points,
-                                      const std::array<Index, dim + 1>& corners) {
-  Eigen::Matrix<double, dim, dim> result;
+template <int dim, int space>
+Eigen::Matrix<double, space, dim> edges(const std::vector<Eigen::Matrix<double, space, 1>>& points,
+                                        const std::array<Index, dim + 1>& corners) {
+  Eigen::Matrix<double, space, dim> result;
   for (std::size_t k = 0; k < dim; ++k)
     result.col(static_cast<Eigen::Index>(k)) = points[corners[k + 1]] - points[corners[0]];
   return result;
@@ -88,10 +88,14 @@ double energy(const Eigen::Matrix<double, dim, dim>& j, double epsilon,
 
 }  // namespace
 
-template <int dim>
-Distortion<dim>::Distortion(std::span<const Matrix> rest, std::vector<Corners> simplices,
-                            std::vector<Point> points, Index n_free)
-    : points_(std::move(points)), simplices_(std::move(simplices)), n_free_(n_free) {
+template <int dim, int space>
+Distortion<dim, space>::Distortion(std::span<const Matrix> rest, std::vector<Corners> simplices,
+                                   std::vector<Point> points, Index n_free,
+                                   std::vector<Frame> frames)
+    : points_(std::move(points)),
+      simplices_(std::move(simplices)),
+      frames_(std::move(frames)),
+      n_free_(n_free) {
   inverse_rest_.reserve(rest.size());
   weights_.reserve(rest.size());
   for (const Matrix& shape : rest) {
@@ -101,8 +105,8 @@ Distortion<dim>::Distortion(std::span<const Matrix> rest, std::vector<Corners> s
   index_slots();
 }
 
-template <int dim>
-void Distortion<dim>::index_slots() {
+template <int dim, int space>
+void Distortion<dim, space>::index_slots() {
   first_slot_.assign(static_cast<std::size_t>(n_free_) + 1, 0);
   const auto is_free = [&](Index node) { return node < n_free_; };
   for (const Corners& corners : simplices_)
@@ -119,30 +123,40 @@ void Distortion<dim>::index_slots() {
     }
 }
 
-template <int dim>
-Eigen::VectorXd Distortion<dim>::free_points() const {
-  Eigen::VectorXd result(static_cast<Eigen::Index>(n_free_) * dim);
+template <int dim, int space>
+Eigen::VectorXd Distortion<dim, space>::free_points() const {
+  Eigen::VectorXd result(static_cast<Eigen::Index>(n_free_) * space);
   for (Eigen::Index i = 0; i < n_free_; ++i)
-    result.template segment<dim>(i * dim) = points_[static_cast<std::size_t>(i)];
+    result.template segment<space>(i * space) = points_[static_cast<std::size_t>(i)];
   return result;
 }
 
-template <int dim>
-void Distortion<dim>::place(const Eigen::VectorXd& free_points) {
+template <int dim, int space>
+void Distortion<dim, space>::place(const Eigen::VectorXd& free_points) {
   for (Eigen::Index i = 0; i < n_free_; ++i)
-    points_[static_cast<std::size_t>(i)] = free_points.template segment<dim>(i * dim);
+    points_[static_cast<std::size_t>(i)] = free_points.template segment<space>(i * space);
 }
 
-template <int dim>
-typename Distortion<dim>::Matrix Distortion<dim>::jacobian(std::size_t simplex) const {
-  return edges<dim>(points_, simplices_[simplex]) * inverse_rest_[simplex];
+template <int dim, int space>
+typename Distortion<dim, space>::Matrix Distortion<dim, space>::jacobian(
+    std::size_t simplex) const {
+  const Eigen::Matrix<double, space, dim> now = edges<dim, space>(points_, simplices_[simplex]);
+  if constexpr (space == dim)
+    return now * inverse_rest_[simplex];
+  else
+    return frames_[simplex] * now * inverse_rest_[simplex];
 }
 
-template <int dim>
-double Distortion<dim>::add_simplex(std::size_t simplex) {
+template <int dim, int space>
+double Distortion<dim, space>::add_simplex(std::size_t simplex) {
   Matrix derivative;
   const double value = energy<dim>(jacobian(simplex), epsilon_, derivative);
-  const Matrix by_edges = weights_[simplex] * derivative * inverse_rest_[simplex].transpose();
+  const Matrix by_seen = weights_[simplex] * derivative * inverse_rest_[simplex].transpose();
+  Eigen::Matrix<double, space, dim> by_edges;
+  if constexpr (space == dim)
+    by_edges = by_seen;
+  else
+    by_edges = frames_[simplex].transpose() * by_seen;
   const Corners& slot = slot_of_corner_[simplex];
   if (slot[0] >= 0) slots_[slot[0]] = -by_edges.rowwise().sum();
   for (std::size_t k = 1; k <= dim; ++k)
@@ -150,8 +164,9 @@ double Distortion<dim>::add_simplex(std::size_t simplex) {
   return weights_[simplex] * value;
 }
 
-template <int dim>
-double Distortion<dim>::operator()(const Eigen::VectorXd& free_points, Eigen::VectorXd& gradient) {
+template <int dim, int space>
+double Distortion<dim, space>::operator()(const Eigen::VectorXd& free_points,
+                                          Eigen::VectorXd& gradient) {
   place(free_points);
   std::vector<double> sums(n_ranges(simplices_.size()), 0);
   parallel_for(simplices_.size(), simplices_per_range, [&](std::size_t begin, std::size_t end) {
@@ -165,7 +180,7 @@ double Distortion<dim>::operator()(const Eigen::VectorXd& free_points, Eigen::Ve
     for (std::size_t i = begin; i < end; ++i) {
       Point sum = Point::Zero();
       for (std::size_t s = first_slot_[i]; s < first_slot_[i + 1]; ++s) sum += slots_[s];
-      gradient.template segment<dim>(static_cast<Eigen::Index>(i) * dim) = sum;
+      gradient.template segment<space>(static_cast<Eigen::Index>(i) * space) = sum;
     }
   });
   double total = 0;
@@ -173,8 +188,8 @@ double Distortion<dim>::operator()(const Eigen::VectorXd& free_points, Eigen::Ve
   return total;
 }
 
-template <int dim>
-Determinants Distortion<dim>::determinants(const Eigen::VectorXd& free_points) {
+template <int dim, int space>
+Determinants Distortion<dim, space>::determinants(const Eigen::VectorXd& free_points) {
   place(free_points);
   std::vector<Determinants> parts(n_ranges(simplices_.size()));
   parallel_for(simplices_.size(), simplices_per_range, [&](std::size_t begin, std::size_t end) {
@@ -195,6 +210,7 @@ Determinants Distortion<dim>::determinants(const Eigen::VectorXd& free_points) {
 }
 
 template class Distortion<2>;
+template class Distortion<2, 3>;
 template class Distortion<3>;
 
 }  // namespace roughmesh::detail

@@ -20,21 +20,24 @@ struct Determinants {
 };
 
 /// Sum over simplices of h e(J) (docs/math.md, eq. 50 and 51): J maps the rest shape to the current
-/// one, e is 0 for rotations and finite for any J. Positions have `dim` coordinates: triangles in a
-/// plane (2), tetrahedra (3). A function of the positions of the free nodes, one after the other.
-template <int dim>
+/// one, e is 0 for rotations and finite for any J. Positions have `space` coordinates: triangles in
+/// a plane (2), tetrahedra (3), and triangles in space (dim 2, space 3), each seen along the normal
+/// of its rest shape (eq. 68). A function of the positions of the free nodes, one after the other.
+template <int dim, int space = dim>
 class Distortion {
  public:
-  using Point = Eigen::Matrix<double, dim, 1>;
+  using Point = Eigen::Matrix<double, space, 1>;
   using Matrix = Eigen::Matrix<double, dim, dim>;
+  using Frame = Eigen::Matrix<double, dim, space>;
   using Corners = std::array<Index, dim + 1>;  ///< positions in the array of points
 
   /// @param rest    of each simplex the edges from its first corner to the others, one a column;
-  /// none
-  ///                is flat
+  ///                none is flat
   /// @param points  the first n_free of them are free, all others stay here
+  /// @param frames  orthonormal rows: the axes in which each simplex is seen; empty where all
+  ///                coordinates count
   Distortion(std::span<const Matrix> rest, std::vector<Corners> simplices,
-             std::vector<Point> points, Index n_free);
+             std::vector<Point> points, Index n_free, std::vector<Frame> frames = {});
 
   /// The larger, the less it costs to be inverted. Starts at 1.
   void set_epsilon(double epsilon) { epsilon_ = epsilon; }
@@ -54,6 +57,7 @@ class Distortion {
   std::vector<Point> points_;
   std::vector<Corners> simplices_;
   std::vector<Matrix> inverse_rest_;
+  std::vector<Frame> frames_;
   std::vector<double> weights_;
   Index n_free_ = 0;
   double epsilon_ = 1;
@@ -65,6 +69,7 @@ class Distortion {
 };
 
 extern template class Distortion<2>;
+extern template class Distortion<2, 3>;
 extern template class Distortion<3>;
 
 }  // namespace roughmesh::detail

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "disjoint_sets.hpp"
+#include "unfolding.hpp"
 
 namespace roughmesh::detail {
 namespace {
@@ -48,7 +49,9 @@ EdgeMotion::EdgeMotion(std::span<const Surface> surfaces, std::span<const EdgeOp
                        const NodeConstraints& constraints, std::span<const Index> moved)
     : joined_(join_surfaces(surfaces, moved)), sectors_(find_sectors(surfaces, options, joined_)) {
   find_still(surfaces, options, constraints.fixed, moved);
-  find_bound(across(constraints, moved), image_classes(options, joined_));
+  const Images images = image_classes(options, joined_);
+  find_bound(across(constraints, moved), images);
+  find_sliding(options, images);
   prepare_chains();
   prepare_faces(options);
 }
@@ -105,6 +108,22 @@ void EdgeMotion::find_bound(const std::vector<std::vector<Vec3>>& across, const 
                         (least.solve(normals[0], 1) - normals[0]).norm() > little_slide;
     bound_.push_back({v, std::move(moving), least, slides});
   }
+}
+
+// Images would have to slide alike, ends of surfaces would change their shape.
+void EdgeMotion::find_sliding(std::span<const EdgeOptions> options, const Images& images) {
+  can_slide_.assign(joined_.positions.size(), 0);
+  if (joined_.dimension == 1) return;
+  for (Index v = 0; v < joined_.n_vertices(); ++v)
+    can_slide_[v] =
+        is_still_[v] == 0 && !(is_bound(v) && bound_[bound_of_vertex_[v]].least.is_rigid()) ? 1 : 0;
+  for (const Sector& sector : sectors_.all)
+    if (options[sector.surface].rule != EdgeRule::offset) can_slide_[sector.vertex] = 0;
+  for (Index e = 0; e < joined_.edges.size(); ++e)
+    if (sectors_.kind_of_edge[e] == EdgeKind::border)
+      for (const Index vertex : joined_.edges.points[e]) can_slide_[vertex] = 0;
+  for (const std::vector<Index>& vertices : images)
+    for (const Index vertex : vertices) can_slide_[vertex] = 0;
 }
 
 // Edge curves; of a planar mesh, the smooth pieces of the curve itself.
@@ -236,7 +255,22 @@ void EdgeMotion::stretch_faces(std::vector<Vec3>& u) const {
   }
 }
 
-std::vector<Vec3> EdgeMotion::move(std::span<const std::vector<double>> heights) const {
+void EdgeMotion::unfold(std::vector<Vec3>& u) const {
+  if (joined_.dimension == 1 || !has_turned_face(joined_.view(), joined_.positions, u)) return;
+  SlidingSurface surface{joined_.positions, joined_.view(), can_slide_, {}};
+  for (Index v = 0; v < joined_.n_vertices(); ++v) {
+    if (can_slide_[v] == 0) continue;
+    if (!is_bound(v)) {
+      surface.across.push_back({v, sectors_.at(v).front().normal});
+      continue;
+    }
+    for (const Vec3& direction : bound_[bound_of_vertex_[v]].least.bound_directions())
+      surface.across.push_back({v, direction});
+  }
+  detail::unfold(surface, u);
+}
+
+MovedSurface EdgeMotion::move(std::span<const std::vector<double>> heights) const {
   std::vector<Vec3> u(joined_.positions.size(), Vec3::Zero());
   for (Index v = 0; v < joined_.n_vertices(); ++v) {
     if (is_still_[v] != 0) continue;
@@ -247,9 +281,16 @@ std::vector<Vec3> EdgeMotion::move(std::span<const std::vector<double>> heights)
   slide_along_chains(u);
   equal_images(u);
   stretch_faces(u);
-  std::vector<Vec3> displacements;
-  for (const Index vertex : joined_.vertex_of_node) displacements.push_back(u[vertex]);
-  return displacements;
+  const std::vector<Vec3> before = u;
+  unfold(u);
+  MovedSurface moved;
+  for (const Index vertex : joined_.vertex_of_node) {
+    moved.displacements.push_back(u[vertex]);
+    const double slide = (u[vertex] - before[vertex]).norm();
+    moved.n_slid += slide > 0 ? 1 : 0;
+    moved.farthest_slide = std::max(moved.farthest_slide, slide);
+  }
+  return moved;
 }
 
 }  // namespace roughmesh::detail

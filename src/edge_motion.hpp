@@ -25,8 +25,7 @@ class EdgeMotion {
   EdgeMotion(std::span<const Surface> surfaces, std::span<const EdgeOptions> options,
              const NodeConstraints& constraints, std::span<const Index> moved);
 
-  /// One vector per moved node.
-  std::vector<Vec3> move(std::span<const std::vector<double>> heights) const;
+  MovedSurface move(std::span<const std::vector<double>> heights) const;
 
  private:
   struct Bound {
@@ -42,6 +41,7 @@ class EdgeMotion {
   std::vector<std::vector<Vec3>> across(const NodeConstraints& constraints,
                                         std::span<const Index> moved) const;
   void find_bound(const std::vector<std::vector<Vec3>>& across, const Images& images);
+  void find_sliding(std::span<const EdgeOptions> options, const Images& images);
   void prepare_chains();
   void prepare_faces(std::span<const EdgeOptions> options);
   std::vector<std::array<Index, 3>> faces_to_stretch(std::span<const std::uint8_t> is_inner) const;
@@ -56,6 +56,7 @@ class EdgeMotion {
   void slide_along_chains(std::vector<Vec3>& u) const;
   void equal_images(std::vector<Vec3>& u) const;
   void stretch_faces(std::vector<Vec3>& u) const;
+  void unfold(std::vector<Vec3>& u) const;
 
   JoinedSurfaces joined_;
   Sectors sectors_;
@@ -64,6 +65,8 @@ class EdgeMotion {
   std::vector<Index> bound_of_vertex_;   ///< or -1
   std::vector<Bound> bound_;
   Images images_;  ///< bound vertices that move alike
+  /// Per vertex: where faces would fold it slides, along what it is bound to.
+  std::vector<std::uint8_t> can_slide_;
   Chains chains_;
   std::unique_ptr<const SmoothExtension> faces_;
 };

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "messages.hpp"
+#include "new_tags.hpp"
 #include "size_lattice.hpp"
 
 namespace roughmesh::detail {
@@ -48,14 +49,13 @@ class Assembly {
  public:
   Assembly(const Mesh& input, std::span<const Vec3> positions) : mesh_(input) {
     mesh_.nodes.assign(positions.begin(), positions.end());
-    for (const Tag tag : input.node_tags) last_node_ = std::max(last_node_, tag);
-    for (const ElementBlock& block : input.blocks)
-      for (const Tag tag : block.tags) last_element_ = std::max(last_element_, tag);
+    node_tags_.keep_off(input.node_tags);
+    for (const ElementBlock& block : input.blocks) element_tags_.keep_off(block.tags);
   }
 
   Index add_node(const Vec3& x) {
     mesh_.nodes.push_back(x);
-    mesh_.node_tags.push_back(++last_node_);
+    mesh_.node_tags.push_back(node_tags_.next());
     return mesh_.n_nodes() - 1;
   }
 
@@ -66,8 +66,7 @@ class Assembly {
       if (dimension(block.type.shape) == dim) entity = std::max(entity, block.entity);
     ElementBlock block{type, entity + 1, {add_group(dim, group)}, std::move(nodes), {}};
     block.tags.resize(block.nodes.size() / static_cast<std::size_t>(type.n_nodes));
-    std::iota(block.tags.begin(), block.tags.end(), last_element_ + 1);
-    last_element_ += block.size();
+    for (Tag& tag : block.tags) tag = element_tags_.next();
     mesh_.blocks.push_back(std::move(block));
   }
 
@@ -98,7 +97,7 @@ class Assembly {
   }
 
   Mesh mesh_;
-  Tag last_node_ = 0, last_element_ = 0;
+  NewTags node_tags_{"node"}, element_tags_{"element"};
 };
 
 }  // namespace

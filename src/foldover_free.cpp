@@ -72,10 +72,10 @@ Frame<dim> frame_of(const std::optional<Vec3>& plane_normal) {
   return frame;
 }
 
-template <int dim>
-std::vector<typename Distortion<dim>::Point> in_frame(const Frame<dim>& frame, const Patch& patch,
+template <int space>
+std::vector<Eigen::Matrix<double, space, 1>> in_frame(const Frame<space>& frame, const Patch& patch,
                                                       std::span<const Vec3> positions) {
-  std::vector<typename Distortion<dim>::Point> result;
+  std::vector<Eigen::Matrix<double, space, 1>> result;
   result.reserve(patch.nodes.size());
   for (const Index node : patch.nodes) result.push_back(frame * positions[node]);
   return result;
@@ -91,34 +91,45 @@ Eigen::Matrix3d regular(const Eigen::Matrix3d& shape) {
   return sum / 6 * unit;
 }
 
-template <int dim>
-std::vector<typename Distortion<dim>::Matrix> rest_shapes(const Frame<dim>& frame,
-                                                          const Patch& patch,
-                                                          const Simplices& simplices) {
-  std::vector<typename Distortion<dim>::Matrix> shapes(patch.simplices.size());
-  for (std::size_t t = 0; t < shapes.size(); ++t) {
-    bool is_new = false;
-    for (std::size_t k = 0; k <= dim; ++k) {
-      const Index node = patch.nodes[patch.simplices[t][k]];
-      is_new = is_new || node >= simplices.first_new_node;
-      if (k > 0)
-        shapes[t].col(static_cast<Eigen::Index>(k) - 1) =
-            frame * (simplices.rest[node] - simplices.rest[patch.nodes[patch.simplices[t][0]]]);
-    }
-    if constexpr (dim == 3)
-      if (is_new) shapes[t] = regular(shapes[t]);
-  }
-  return shapes;
+// Edges from the first corner, one a column, and whether a corner is new.
+template <int dim, int space>
+Eigen::Matrix<double, space, dim> rest_edges(const Frame<space>& frame, const Patch& patch,
+                                             const Simplex& simplex, const Simplices& simplices) {
+  Eigen::Matrix<double, space, dim> edges;
+  for (std::size_t k = 1; k <= dim; ++k)
+    edges.col(static_cast<Eigen::Index>(k) - 1) =
+        frame * (simplices.rest[patch.nodes[simplex[k]]] - simplices.rest[patch.nodes[simplex[0]]]);
+  return edges;
 }
 
-template <int dim>
-Distortion<dim> make_distortion(const Frame<dim>& frame, const Patch& patch,
-                                const Simplices& simplices, std::span<const Vec3> positions) {
-  std::vector<typename Distortion<dim>::Corners> corners_of(patch.simplices.size());
-  for (std::size_t t = 0; t < corners_of.size(); ++t)
-    std::copy_n(patch.simplices[t].begin(), dim + 1, corners_of[t].begin());
-  return {rest_shapes<dim>(frame, patch, simplices), std::move(corners_of),
-          in_frame<dim>(frame, patch, positions), patch.n_free};
+// Of a triangle in space, the axes of its plane.
+Frame<2> frame_of(const Eigen::Matrix<double, 3, 2>& edges) {
+  Frame<2> frame;
+  frame.row(0) = edges.col(0).normalized();
+  frame.row(1) = edges.col(0).cross(edges.col(1)).normalized().cross(Vec3(frame.row(0)));
+  return frame;
+}
+
+template <int dim, int space>
+Distortion<dim, space> make_distortion(const Frame<space>& frame, const Patch& patch,
+                                       const Simplices& simplices,
+                                       std::span<const Vec3> positions) {
+  std::vector<typename Distortion<dim, space>::Corners> corners_of;
+  std::vector<Eigen::Matrix<double, dim, dim>> shapes;
+  std::vector<Eigen::Matrix<double, dim, space>> frames;
+  for (const Simplex& simplex : patch.simplices) {
+    std::copy_n(simplex.begin(), dim + 1, corners_of.emplace_back().begin());
+    const auto edges = rest_edges<dim, space>(frame, patch, simplex, simplices);
+    if constexpr (dim != space) frames.push_back(frame_of(edges));
+    if constexpr (dim != space) shapes.push_back(frames.back() * edges);
+    if constexpr (dim == space) shapes.push_back(edges);
+    const auto is_new = [&](Index i) { return patch.nodes[i] >= simplices.first_new_node; };
+    if constexpr (dim == 3)
+      if (std::any_of(simplex.begin(), simplex.end(), is_new))
+        shapes.back() = regular(shapes.back());
+  }
+  return {shapes, std::move(corners_of), in_frame<space>(frame, patch, positions), patch.n_free,
+          std::move(frames)};
 }
 
 LBFGSpp::LBFGSParam<double> parameters(const UntangleOptions& options) {
@@ -135,10 +146,10 @@ LBFGSpp::LBFGSParam<double> parameters(const UntangleOptions& options) {
 }
 
 // A function of the numbers that the coordinates of tied nodes depend on.
-template <int dim>
+template <int dim, int space>
 class TiedDistortion {
  public:
-  TiedDistortion(Distortion<dim>& distortion, const TiedPoints<dim>& tied)
+  TiedDistortion(Distortion<dim, space>& distortion, const TiedPoints<space>& tied)
       : distortion_(distortion), tied_(tied), start_(distortion.free_points()) {}
 
   void set_epsilon(double epsilon) { distortion_.set_epsilon(epsilon); }
@@ -155,8 +166,8 @@ class TiedDistortion {
  private:
   Eigen::VectorXd points(const Eigen::VectorXd& q) const { return start_ + tied_.shifts(q); }
 
-  Distortion<dim>& distortion_;
-  const TiedPoints<dim>& tied_;
+  Distortion<dim, space>& distortion_;
+  const TiedPoints<space>& tied_;
   Eigen::VectorXd start_;
 };
 
@@ -211,9 +222,9 @@ bool minimize(Energy& distortion, const UntangleOptions& options, Eigen::VectorX
 }
 
 // Moves the free nodes of a patch; returns how far, and whether none of its simplices is inverted.
-template <int dim>
-std::pair<Eigen::VectorXd, bool> solve(Distortion<dim>& distortion, const Patch& patch,
-                                       const Simplices& simplices, const Frame<dim>& axes,
+template <int dim, int space>
+std::pair<Eigen::VectorXd, bool> solve(Distortion<dim, space>& distortion, const Patch& patch,
+                                       const Simplices& simplices, const Frame<space>& axes,
                                        const UntangleOptions& options) {
   const std::span free_nodes = std::span(patch.nodes).first(static_cast<std::size_t>(patch.n_free));
   const Eigen::VectorXd before = distortion.free_points();
@@ -223,23 +234,24 @@ std::pair<Eigen::VectorXd, bool> solve(Distortion<dim>& distortion, const Patch&
     const bool is_valid = minimize(distortion, options, x);
     return {x - before, is_valid};
   }
-  const TiedPoints<dim> tied(simplices.ties, free_nodes, axes, before);
-  TiedDistortion<dim> energy(distortion, tied);
+  const TiedPoints<space> tied(simplices.ties, free_nodes, axes, before);
+  TiedDistortion<dim, space> energy(distortion, tied);
   Eigen::VectorXd q = tied.start();
   const bool is_valid = minimize(energy, options, q);
   return {tied.shifts(q), is_valid};
 }
 
-template <int dim>
+template <int dim, int space>
 bool untangle_patch(const Patch& patch, const Simplices& simplices, std::vector<Vec3>& positions,
                     const UntangleOptions& options) {
   const double unit = unit_of(patch, simplices.rest);
-  const Frame<dim> axes = frame_of<dim>(simplices.plane_normal);
-  Distortion<dim> distortion = make_distortion<dim>(axes / unit, patch, simplices, positions);
-  const auto [shifts, is_valid] = solve<dim>(distortion, patch, simplices, axes, options);
+  const Frame<space> axes = frame_of<space>(simplices.plane_normal);
+  Distortion<dim, space> distortion =
+      make_distortion<dim, space>(axes / unit, patch, simplices, positions);
+  const auto [shifts, is_valid] = solve<dim, space>(distortion, patch, simplices, axes, options);
   for (Index i = 0; i < patch.n_free; ++i) {
-    const Eigen::Index at = static_cast<Eigen::Index>(i) * dim;
-    positions[patch.nodes[i]] += unit * axes.transpose() * shifts.template segment<dim>(at);
+    const Eigen::Index at = static_cast<Eigen::Index>(i) * space;
+    positions[patch.nodes[i]] += unit * axes.transpose() * shifts.template segment<space>(at);
   }
   return is_valid;
 }
@@ -250,8 +262,10 @@ bool untangle(const Simplices& simplices, const NodeFlags& is_free, std::vector<
               const UntangleOptions& options) {
   const Patch patch = make_patch(simplices, is_free);
   if (patch.simplices.empty()) return true;
-  return patch.simplices.front()[3] < 0 ? untangle_patch<2>(patch, simplices, positions, options)
-                                        : untangle_patch<3>(patch, simplices, positions, options);
+  const auto run = patch.simplices.front()[3] >= 0 ? untangle_patch<3, 3>
+                   : simplices.plane_normal        ? untangle_patch<2, 2>
+                                                   : untangle_patch<2, 3>;
+  return run(patch, simplices, positions, options);
 }
 
 }  // namespace roughmesh::detail

@@ -58,4 +58,12 @@ Vec3 LeastDisplacement::solve(const Vec3& load, double largest) const {
   return length > most ? Vec3(most / length * u) : u;
 }
 
+std::vector<Vec3> LeastDisplacement::bound_directions() const {
+  const Modes modes(Eigen::Matrix3d::Identity() - free_);
+  std::vector<Vec3> directions;
+  for (int k = 0; k < 3; ++k)
+    if (modes.eigenvalues()[k] > 0.5) directions.emplace_back(modes.eigenvectors().col(k));
+  return directions;
+}
+
 }  // namespace roughmesh::detail

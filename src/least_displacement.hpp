@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "roughmesh/mesh.hpp"
 
@@ -22,6 +23,8 @@ class LeastDisplacement {
 
   /// The part of v that changes none of the products n_k . u and m . u.
   Vec3 free_part(const Vec3& v) const { return free_ * v; }
+  /// What that leaves out: none to three directions, orthonormal.
+  std::vector<Vec3> bound_directions() const;
   bool is_rigid() const { return free_.isZero(0); }  ///< there is none
 
  private:

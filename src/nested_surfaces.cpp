@@ -92,6 +92,11 @@ Eigen::AlignedBox3d box_of(const Component& component, std::span<const Vec3> nod
   return box;
 }
 
+// On no other component where they touch at corners and edges.
+Vec3 middle(const Triangle& t, std::span<const Vec3> nodes) {
+  return nodes[t[0]] / 3 + nodes[t[1]] / 3 + nodes[t[2]] / 3;
+}
+
 // Of each component those that enclose it.
 std::vector<std::vector<Index>> enclosures(const std::vector<Component>& components,
                                            std::span<const Vec3> nodes) {
@@ -103,7 +108,7 @@ std::vector<std::vector<Index>> enclosures(const std::vector<Component>& compone
     for (std::size_t c = begin; c < end; ++c)
       for (std::size_t other = 0; other < components.size(); ++other) {
         if (other == c || !boxes[other].contains(boxes[c])) continue;
-        const Vec3& x = nodes[components[c].triangles.front().front()];
+        const Vec3 x = middle(components[c].triangles.front(), nodes);
         if (std::abs(winding_number(components[other].triangles, nodes, x)) > 0.5)
           around[c].push_back(static_cast<Index>(other));
       }

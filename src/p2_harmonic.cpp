@@ -172,8 +172,7 @@ class Assembly {
              static_cast<double>(std::max<std::size_t>(1, volumes_.size()));
     for (std::size_t e = 0; e < elements.size(); ++e)
       for (const Index node : elements[e].nodes(mesh))
-        if (volumes_[e] > 0 && roles.unknown[node] >= 0)
-          at_unknown_[static_cast<std::size_t>(roles.unknown[node])].push_back(e);
+        if (volumes_[e] > 0 && roles.unknown[node] >= 0) add_once(e, roles.unknown[node]);
   }
 
   void rows(std::size_t begin, std::size_t end, RowRange& stiffness, RowRange& coupling) const {
@@ -191,12 +190,22 @@ class Assembly {
   }
 
  private:
+  // Periodic partners of one element are one unknown.
+  void add_once(std::size_t element, Index unknown) {
+    auto& elements = at_unknown_[static_cast<std::size_t>(unknown)];
+    if (elements.empty() || elements.back() != element) elements.push_back(element);
+  }
+
   void add_element(std::size_t number, Index i, Row& unknown, Row& given) const {
+    const auto nodes = elements_[number].nodes(mesh_);
+    for (std::size_t own = 0; own < nodes.size(); ++own)
+      if (roles_.unknown[nodes[own]] == i)
+        add_row(number, static_cast<Eigen::Index>(own), unknown, given);
+  }
+
+  void add_row(std::size_t number, Eigen::Index own, Row& unknown, Row& given) const {
     const StraightElement element(mesh_, elements_[number]);
     const auto nodes = elements_[number].nodes(mesh_);
-    const auto own = std::find_if(nodes.begin(), nodes.end(),
-                                  [&](Index node) { return roles_.unknown[node] == i; }) -
-                     nodes.begin();
     Eigen::Matrix<double, Eigen::Dynamic, 1, 0, static_cast<int>(most_quadratic_nodes), 1> row =
         Eigen::VectorXd::Zero(static_cast<Eigen::Index>(nodes.size()));
     for (std::size_t q = 0; q < element.gradients.weights.size(); ++q) {

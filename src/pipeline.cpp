@@ -136,12 +136,14 @@ class Run {
     timer_.begin_realization(realization);
     rough_.realization = realization;
     const auto heights = timer_.time(&Timings::field, [&] { return fields_.heights(realization); });
-    const std::vector<Vec3> displacements =
+    const MovedSurface moved =
         timer_.time(&Timings::displace, [&] { return surface_mover_.move(heights); });
-    accept_surface(displacements);
-    const VolumeMethod method = move_volume(displacements);
+    detail::warn_of_slides(report_, realization, moved);
+    accept_surface(moved.displacements);
+    const VolumeMethod method = move_volume(moved.displacements);
     fill_fields(heights);
     report_.realizations.push_back(describe_realization(method, heights));
+    report_.realizations.back().slid_nodes = moved.n_slid;
     return rough_;
   }
 
@@ -186,10 +188,12 @@ class Run {
                             .sliding = sliding_on_surfaces(walls_, surfaces_.surfaces)}};
   }
 
-  Index n_torn() const { return static_cast<Index>(walls_.torn.size()); }
+  detail::TornWalls torn_walls() const {
+    return {static_cast<Index>(walls_.torn.size()), report_.request.volume == VolumeChoice::remesh};
+  }
 
   SurfaceChecker make_checker() const {
-    detail::warn_of_walls(report_, n_torn(), walls_can_slide());
+    detail::warn_of_walls(report_, torn_walls().n_nodes, walls_can_slide());
     SurfaceChecker checker(mesh_, surfaces_.surfaces, following_nodes(walls_, surfaces_.surfaces));
     for (std::size_t s = 0; s < surfaces_.surfaces.size(); ++s) {
       const Roughness& request = surfaces_.plans[s].request;
@@ -241,7 +245,7 @@ class Run {
 
   void refuse_surface() {
     detail::refuse_invalid(rough_.surface_check, rough_.realization,
-                           detail::remedy(surfaces_.fields, n_torn(),
+                           detail::remedy(surfaces_.fields, torn_walls(),
                                           detail::lower_rms(rough_.surface_check, report_.request)),
                            report_);
   }
@@ -270,7 +274,7 @@ class Run {
     return moved.method;
   }
 
-  std::string remedy() const { return detail::remedy(surfaces_.fields, n_torn()); }
+  std::string remedy() const { return detail::remedy(surfaces_.fields, torn_walls()); }
 
   void take_moved(const MovedVolume& moved) {
     const Mesh& smooth = moved.split ? *moved.split : mesh_;

@@ -32,7 +32,7 @@ void refuse(const std::string& defects, std::uint64_t realization, const std::st
 
 }  // namespace
 
-std::string remedy(std::span<const FieldPlan> fields, Index n_wall_nodes,
+std::string remedy(std::span<const FieldPlan> fields, const TornWalls& walls,
                    const std::string& lower) {
   const bool is_smooth = std::all_of(fields.begin(), fields.end(), [](const FieldPlan& field) {
     return field.correlation.autocorrelation().slope_variance().has_value();
@@ -40,8 +40,10 @@ std::string remedy(std::span<const FieldPlan> fields, Index n_wall_nodes,
   std::string text = lower;
   text += is_smooth ? " or use a longer --length"
                     : " or take a smoother --acf (slopes of this one grow as the mesh is refined)";
-  if (n_wall_nodes > 0)
-    text += "; the rough surface ends on faces that stay, where elements invert first: --fade";
+  if (walls.n_nodes > 0)
+    text += fmt::format(
+        "; the rough surface ends on faces that stay, where elements invert first: --fade{}",
+        walls.would_slide ? ", or --volume move, under which plane ones slide" : "");
   return text + "; --allow-invalid writes it all the same";
 }
 

@@ -14,11 +14,16 @@
 
 namespace roughmesh::detail {
 
+/// Faces that stay although nodes of a rough surface on them move.
+struct TornWalls {
+  Index n_nodes = 0;
+  bool would_slide = false;  ///< some of them, under another choice of --volume
+};
+
 /// What helps against inverted elements and surfaces that meet themselves; a finer mesh does not,
 /// it makes elements smaller.
-/// @param n_wall_nodes  that move although their faces stay
-/// @param lower         what to do with --rms
-std::string remedy(std::span<const FieldPlan> fields, Index n_wall_nodes,
+/// @param lower  what to do with --rms
+std::string remedy(std::span<const FieldPlan> fields, const TornWalls& walls,
                    const std::string& lower = "lower --rms");
 
 /// Warns where report.request allows invalid meshes.

@@ -11,6 +11,7 @@
 
 #include "corners.hpp"
 #include "messages.hpp"
+#include "new_tags.hpp"
 #include "remesh_task.hpp"
 
 namespace roughmesh::detail {
@@ -134,8 +135,9 @@ void check_regions(const Touched& touched) {
 }
 
 // Nodes on the edges of faces that stay go with the corners that moved, unless they moved
-// themselves (docs/math.md, eq. 38).
-std::vector<Vec3> with_followers(const Touched& touched, std::span<const Vec3> positions) {
+// themselves or have a height of their own (docs/math.md, eq. 38).
+std::vector<Vec3> with_followers(const Touched& touched, const Flags& is_rough,
+                                 std::span<const Vec3> positions) {
   const std::vector<Vec3>& before = touched.mesh.nodes;
   std::vector<Vec3> result(positions.begin(), positions.end());
   const auto shift = [&](Index node) -> Vec3 { return positions[node] - before[node]; };
@@ -143,7 +145,8 @@ std::vector<Vec3> with_followers(const Touched& touched, std::span<const Vec3> p
     const auto nodes = face.all();
     for (std::size_t k = 3; k < nodes.size(); ++k) {
       const Index node = nodes[k], a = nodes[k - 3], b = nodes[(k - 2) % 3];
-      if (positions[node] == before[node]) result[node] = before[node] + (shift(a) + shift(b)) / 2;
+      if (is_rough[node] == 0 && positions[node] == before[node])
+        result[node] = before[node] + (shift(a) + shift(b)) / 2;
     }
   });
   return result;
@@ -166,7 +169,7 @@ class Assembly {
       mesh_.nodes.push_back(positions[node]);
       mesh_.node_tags.push_back(input_.node_tags[node]);
     }
-    for (const Tag tag : input_.node_tags) last_node_ = std::max(last_node_, tag);
+    node_tags_.keep_off(input_.node_tags);
     keep_elements();
     collect_middles();
   }
@@ -196,8 +199,8 @@ class Assembly {
       const ElementBlock& old = input_.blocks[b];
       ElementBlock& block = mesh_.blocks.emplace_back(
           ElementBlock{old.type, old.entity, old.physical_groups, {}, {}});
+      element_tags_.keep_off(old.tags);
       for (Index e = 0; e < old.size(); ++e) {
-        last_element_ = std::max(last_element_, old.tags[e]);
         if (touched_.has(b, e)) {
           note_region(b, e);
           continue;
@@ -230,7 +233,7 @@ class Assembly {
 
   Index add_node(const Vec3& x) {
     mesh_.nodes.push_back(x);
-    mesh_.node_tags.push_back(++last_node_);
+    mesh_.node_tags.push_back(node_tags_.next());
     return mesh_.n_nodes() - 1;
   }
 
@@ -272,7 +275,7 @@ class Assembly {
       if (block.type.order == 2)
         for (const auto& [i, j] : local_edges(block.type.shape))
           block.nodes.push_back(middle(make_edge(t[i], t[j])));
-      block.tags.push_back(++last_element_);
+      block.tags.push_back(element_tags_.next());
     }
   }
 
@@ -283,20 +286,19 @@ class Assembly {
   std::vector<Index> first_block_;  // per region
   Flags is_negative_;               // per region
   std::vector<std::pair<Edge, Index>> middles_;
-  Tag last_node_ = 0, last_element_ = 0;
+  NewTags node_tags_{"node"}, element_tags_{"element"};
 };
 
 }  // namespace
 
 VolumeRemesher::VolumeRemesher(const Mesh& mesh, std::span<const Surface> surfaces,
                                GmshProgram gmsh)
-    : mesh_(mesh), gmsh_(std::move(gmsh)) {
+    : mesh_(mesh), gmsh_(std::move(gmsh)), is_rough_(mesh.nodes.size(), 0) {
   if (dimension(mesh) != 3)
     throw InputError("--volume remesh: the mesh has no volumes to mesh anew; take --volume move");
   regions_ = find_regions(mesh);
-  Flags will_move(mesh.nodes.size(), 0);
-  for (const Index node : moved_nodes(surfaces)) will_move[node] = 1;
-  const Flags is_touched = regions_at(will_move);
+  for (const Index node : moved_nodes(surfaces)) is_rough_[node] = 1;
+  const Flags is_touched = regions_at(is_rough_);
   check_regions({mesh_, regions_, is_touched});
 }
 
@@ -333,7 +335,7 @@ RemeshedVolume VolumeRemesher::remesh(std::span<const Vec3> positions) const {
     return keep_all(mesh_, positions);
   const Touched touched{mesh_, regions_, is_touched};
   check_regions(touched);
-  const std::vector<Vec3> places = with_followers(touched, positions);
+  const std::vector<Vec3> places = with_followers(touched, is_rough_, positions);
   const RemeshTask task = make_remesh_task(mesh_, regions_, is_touched, places);
   return Assembly(touched, places).run(task, fill_volumes(task.fill, gmsh_));
 }

@@ -47,6 +47,7 @@ class VolumeRemesher {
   const Mesh& mesh_;
   GmshProgram gmsh_;
   VolumeRegions regions_;
+  std::vector<std::uint8_t> is_rough_;  // per node
 };
 
 }  // namespace roughmesh::detail

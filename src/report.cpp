@@ -125,6 +125,7 @@ ordered_json realization_json(const RealizationReport& r) {
                  {"min_quality", number(r.min_quality)},
                  {"min_quality_before", number(r.min_quality_before)},
                  {"self_intersections", r.self_intersections},
+                 {"slid_nodes", r.slid_nodes},
                  {"volume_method", name(r.volume_method)}});
   if (r.surfaces.size() < 2) return object;
   for (const SurfaceStatistics& surface : r.surfaces)

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <optional>
 #include <utility>
 
+#include "new_tags.hpp"
 #include "volume_faces.hpp"
 
 namespace roughmesh::detail {
@@ -92,9 +94,8 @@ class Splitter {
         marked_(marked),
         result_{mesh, {positions.begin(), positions.end()}, 0},
         first_new_(mesh.n_nodes()) {
-    for (const ElementBlock& block : mesh.blocks)
-      for (const Tag tag : block.tags) last_element_ = std::max(last_element_, tag);
-    for (const Tag tag : mesh.node_tags) last_node_ = std::max(last_node_, tag);
+    for (const ElementBlock& block : mesh.blocks) element_tags_.keep_off(block.tags);
+    node_tags_.keep_off(mesh.node_tags);
     for (const auto& [a, b] : edges_) add_node(std::array{a, b});
   }
 
@@ -114,7 +115,7 @@ class Splitter {
     }
     result_.mesh.nodes.push_back(rest);
     result_.positions.push_back(moved);
-    result_.mesh.node_tags.push_back(++last_node_);
+    result_.mesh.node_tags.push_back(node_tags_.next());
     is_free_.push_back(1);
     ++result_.n_new_nodes;
     return result_.mesh.n_nodes() - 1;
@@ -124,7 +125,7 @@ class Splitter {
     const ElementBlock old =
         std::exchange(block, ElementBlock{block.type, block.entity, block.physical_groups, {}, {}});
     for (Index e = 0; e < old.size(); ++e) {
-      next_tag_ = old.tags[e];
+      old_tag_ = old.tags[e];
       const Tetrahedron t = tetrahedron(old, e);
       split_edges(t, any_of(t, marked_), block);
     }
@@ -162,8 +163,8 @@ class Splitter {
 
   void add(const Tetrahedron& t, ElementBlock& out) {
     out.nodes.insert(out.nodes.end(), t.begin(), t.end());
-    out.tags.push_back(next_tag_);
-    next_tag_ = ++last_element_;
+    out.tags.push_back(old_tag_ ? *old_tag_ : element_tags_.next());
+    old_tag_.reset();
   }
 
   std::vector<Edge> edges_;
@@ -171,7 +172,8 @@ class Splitter {
   const NodeFlags& marked_;
   SplitMesh result_;
   Index first_new_ = 0;
-  Tag last_element_ = 0, last_node_ = 0, next_tag_ = 0;
+  NewTags node_tags_{"node"}, element_tags_{"element"};
+  std::optional<Tag> old_tag_;  // of the element that is split, until its first part has it
 };
 
 }  // namespace

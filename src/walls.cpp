@@ -199,9 +199,10 @@ void keep_borders(const Mesh& mesh, const Patched& walls, const Flags& is_rough,
 void keep_features(const Mesh& mesh, const Flags& is_rough, int face_dimension,
                    NodeDirections& directions) {
   const auto keep_line = [&](Index a, Index b) {
-    if (!directions.has(a) || !directions.has(b) || (is_rough[a] != 0 && is_rough[b] != 0)) return;
+    if (is_rough[a] != 0 && is_rough[b] != 0) return;
     const Vec3 along = (mesh.nodes[b] - mesh.nodes[a]).normalized();
     for (const Index node : {a, b}) {
+      if (!directions.has(node)) continue;
       const Directions planes = directions.of(node);
       for (std::size_t k = 0; k < planes.n; ++k)
         if (std::abs(planes.all[k].dot(along)) <= in_plane)

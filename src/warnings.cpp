@@ -185,6 +185,17 @@ void warn_of_curved_elements(Report& report, const MeshCheck& check) {
         check.curved_inverted_before));
 }
 
+void warn_of_slides(Report& report, std::uint64_t realization, const MovedSurface& moved) {
+  const bool is_told = std::any_of(report.realizations.begin(), report.realizations.end(),
+                                   [](const RealizationReport& r) { return r.slid_nodes > 0; });
+  if (moved.n_slid == 0 || is_told) return;
+  report.warnings.push_back(fmt::format(
+      "realization {}: heights would fold faces over where the mesh is fine or curved; {} nodes "
+      "around them slid along the surface, by up to {:.3g} (slid_nodes of the report tells of each "
+      "realization)",
+      realization, moved.n_slid, moved.farthest_slide));
+}
+
 void warn_of_split(Report& report, std::uint64_t realization, const Mesh& mesh, const Mesh& split) {
   report.warnings.push_back(fmt::format(
       "realization {}: edges were split where inverted elements had no node to move: {} nodes and "

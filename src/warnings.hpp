@@ -5,6 +5,7 @@
 #include <string>
 
 #include "roughmesh/check.hpp"
+#include "roughmesh/displace.hpp"
 #include "roughmesh/mesh.hpp"
 #include "roughmesh/move_volume.hpp"
 #include "roughmesh/report.hpp"
@@ -37,6 +38,9 @@ void warn_of_fields(Report& report);
 
 /// Elements that were checked at their corners only.
 void warn_of_curved_elements(Report& report, const MeshCheck& check);
+
+/// Nodes that slid along the surface: once, for the first realization that has some.
+void warn_of_slides(Report& report, std::uint64_t realization, const MovedSurface& moved);
 
 /// A realization on more elements than the input has.
 void warn_of_split(Report& report, std::uint64_t realization, const Mesh& mesh, const Mesh& split);

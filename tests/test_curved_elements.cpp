@@ -164,6 +164,24 @@ TEST(QuadraticExtension, TheStiffnessIsSymmetricAndPositiveDefinite) {
   }
 }
 
+// Nodes that move alike, also those of one element: with C their sums, the stiffness is C^T K C.
+TEST(QuadraticExtension, NodesThatMoveAlikeAreOneUnknown) {
+  for (const Mesh& mesh : affine_meshes()) {
+    detail::NodeRoles roles = half_given(mesh);
+    const Eigen::MatrixXd apart =
+        detail::QuadraticExtension(mesh, cells_of(mesh), roles).stiffness();
+    const Index n = (roles.n_unknown + 1) / 2;
+    Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(apart.cols(), n);
+    for (Index i = 0; i < roles.n_unknown; ++i) sums(i, i / 2) = 1;
+    for (Index& unknown : roles.unknown) unknown = unknown < 0 ? -1 : unknown / 2;
+    roles.n_unknown = n;
+    const Eigen::MatrixXd alike =
+        detail::QuadraticExtension(mesh, cells_of(mesh), roles).stiffness();
+    const Eigen::MatrixXd expected = sums.transpose() * apart * sums;
+    EXPECT_LE((alike - expected).cwiseAbs().maxCoeff(), 1e-14 * apart.cwiseAbs().maxCoeff());
+  }
+}
+
 // E(w + v) = E(w) + E(v) for every v that is zero where w is given or at a corner.
 TEST(QuadraticExtension, TheOffsetMinimizesTheWeightedEnergy) {
   std::mt19937 random(3);

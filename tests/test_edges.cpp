@@ -51,7 +51,8 @@ double bumps(const Vec3& x) { return 0.05 * std::sin(9 * x.x() + 7 * x.y() - 8 *
 std::vector<Vec3> move(const Surface& surface, const std::vector<double>& heights,
                        EdgeRule rule = EdgeRule::offset) {
   const EdgeOptions options{.rule = rule};
-  const std::vector<Vec3> u = SurfaceMover(test::only(surface), {&options, 1}).move({&heights, 1});
+  const std::vector<Vec3> u =
+      SurfaceMover(test::only(surface), {&options, 1}).move({&heights, 1}).displacements;
   std::vector<Vec3> at_points(surface.points.size());
   for (std::size_t i = 0; i < u.size(); ++i) at_points[surface.point_of_node[i]] = u[i];
   return at_points;
@@ -173,7 +174,7 @@ TEST(Edges, NodesOnAWallSlideInIt) {
   const EdgeOptions options;
   const std::vector<double> heights = constant(surface, 0.1);
   const SurfaceMover mover(test::only(surface), {&options, 1}, constraints);
-  const std::vector<Vec3> u = mover.move({&heights, 1});
+  const std::vector<Vec3> u = mover.move({&heights, 1}).displacements;
   for (std::size_t i = 0; i < u.size(); ++i) {
     const double x = surface.points[surface.point_of_node[i]].x();
     EXPECT_NEAR(u[i].z(), 0.1, round_off);
@@ -248,7 +249,7 @@ TEST(Edges, AverageIsTheSameAmongSeveralSurfaces) {
   heights.reserve(surfaces.size());
   for (const Surface& surface : surfaces) heights.push_back(heights_at(surface, bumps));
   const SurfaceMover mover(surfaces, options);
-  const std::vector<Vec3> u = mover.move(heights);
+  const std::vector<Vec3> u = mover.move(heights).displacements;
   const Surface& one = surfaces[0];
   const std::vector<Vec3> expected = test::at_nodes(one, displace(one, heights[0]));
   for (std::size_t i = 0; i < one.nodes.size(); ++i) {
@@ -277,7 +278,8 @@ TEST(Edges, SmoothSurfacesMoveAlongTheirNormalsBitForBit) {
   const EdgeOptions options{.rule = EdgeRule::offset, .sharp_angle = 1e-3};  // all edges are sharp
   EXPECT_NE(SurfaceMover(test::only(select_surface(test::icosphere(3), {.sharp_angle = 1e-3})),
                          {&options, 1})
-                .move({&heights, 1}),
+                .move({&heights, 1})
+                .displacements,
             test::at_nodes(surface, displace(surface, heights)));
 }
 
@@ -288,7 +290,8 @@ TEST(Edges, PointsThatAMaskHoldsStay) {
   for (std::size_t i = 0; i < heights.size(); ++i)
     options.weights.push_back(surface.points[i].x() > 0.4 ? 1 : 0);
   for (std::size_t i = 0; i < heights.size(); ++i) heights[i] *= options.weights[i];
-  const std::vector<Vec3> u = SurfaceMover(test::only(surface), {&options, 1}).move({&heights, 1});
+  const std::vector<Vec3> u =
+      SurfaceMover(test::only(surface), {&options, 1}).move({&heights, 1}).displacements;
   for (std::size_t i = 0; i < u.size(); ++i) {
     const Index point = surface.point_of_node[i];
     if (options.weights[point] == 0) {
@@ -318,7 +321,7 @@ TEST(Edges, ImagesMoveAlike) {
       surface, [](const Vec3& x) { return 0.1 * std::cos(2 * pi * x.x()) + 0.1 * x.y(); });
   EdgeOptions options;
   const auto moved = [&] {
-    return SurfaceMover(test::only(surface), {&options, 1}).move({&heights, 1});
+    return SurfaceMover(test::only(surface), {&options, 1}).move({&heights, 1}).displacements;
   };
   const std::vector<Vec3> apart = moved();
   for (const Vec3& x : surface.points)  // one number for x = 0 and x = 1

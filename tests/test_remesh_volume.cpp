@@ -288,6 +288,25 @@ TEST(RemeshVolume, NodesOnEdgesOfWallsFollowTheirEnds) {
   EXPECT_NEAR(test::tetrahedron_volume(result, result.nodes, 1), 0.55, 1e-13);
 }
 
+// Its height may be 0 while its ends move.
+TEST(RemeshVolume, NodesOfTheSurfaceStayWhereTheyAreTold) {
+  NEEDS_GMSH;
+  Mesh mesh = test::second_order(test::cell_box(ElementShape::tetrahedron, 4), true);
+  mesh.groups[0].name = "surface";
+  Rough rough = roughened(mesh, 0);
+  const std::vector<Index> held = {rough.surface.face(3)[3], rough.surface.face(9)[4]};
+  for (const Index point : rough.surface.nodes)
+    if (std::find(held.begin(), held.end(), point) == held.end())
+      rough.positions[point].z() += 0.01;
+  const RemeshedVolume result = remeshed(rough);
+  for (const Index node : held) {
+    const auto at = std::find(result.old_nodes.begin(), result.old_nodes.end(), node);
+    ASSERT_NE(at, result.old_nodes.end());
+    EXPECT_EQ(result.mesh->nodes[static_cast<std::size_t>(at - result.old_nodes.begin())],
+              mesh.nodes[node]);
+  }
+}
+
 // Its boundary is two surfaces with nothing on their other sides: what gmsh fills must be between
 // them.
 TEST(RemeshVolume, ACavityStaysEmpty) {

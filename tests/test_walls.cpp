@@ -246,6 +246,28 @@ TEST(Walls, GroupsLinesAndPointsInAWallKeepTheirShape) {
   EXPECT_EQ(moved.shift(point.front()), Vec3::Zero());
 }
 
+// The bottom stays; the other end of the line would follow the waves to its side.
+TEST(Walls, ALineToANodeThatStaysKeepsItsDirection) {
+  Mesh mesh = box(8);
+  std::vector<Index> line;
+  for (const double z : {0.0, 0.125})
+    for (Index node = 0; node < mesh.n_nodes(); ++node)
+      if (mesh.nodes[node] == Vec3(1, 0.375, z)) line.push_back(node);
+  ASSERT_EQ(line.size(), 2);
+  const auto shift_at_end = [&] {
+    return move(mesh, "top", [](const Vec3& x) { return 0.1 * waves(x); }).shift(line[1]);
+  };
+  const auto hill = [&](Mesh& m) {
+    for (Vec3& x : m.nodes)
+      if (x.z() > 0.75) x = hilly({{x}, {}, {}, {}, {}, {}, {}}).nodes[0];
+  };
+  hill(mesh);
+  EXPECT_NE(shift_at_end().y(), 0);
+  mesh.blocks.push_back(test::make_block(test::line_type, 7, {7}, line, 700'000));
+  EXPECT_EQ(shift_at_end().y(), 0);
+  EXPECT_NE(shift_at_end().z(), 0);
+}
+
 // Beside a rough part of the top, the rest of it goes on in the same plane: it cannot slide, and
 // does what it did before.
 TEST(Walls, AWallThatContinuesTheSurfaceStays) {

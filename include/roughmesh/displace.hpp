@@ -53,11 +53,20 @@ struct NodeConstraints {
   std::vector<SlidingNode> sliding = {};
 };
 
+/// Where the nodes of surfaces go.
+struct MovedSurface {
+  std::vector<Vec3> displacements;  ///< one per node of SurfaceMover::nodes(), in its order
+  Index n_slid = 0;                 ///< nodes that slid along the surface so that no face folds
+  double farthest_slide = 0;
+};
+
 /// Displacements of the nodes of surfaces of one mesh, prepared once. A node with one smooth piece
 /// of surface around it moves by eq. 3 of docs/math.md. Where several meet, at sharp edges and
 /// where surfaces meet, it moves by the smallest vector with the height of each along its normal,
 /// in the sense of least squares (eq. 36 and 55); what such nodes slide by along the surfaces is
-/// spread over the edges and faces beside them (eq. 56). Nodes at one point of a surface move
+/// spread over the edges and faces beside them (eq. 56). Where faces would turn over, as beside
+/// edges that are much shorter than their heights, the nodes around them slide along the surface
+/// until none does, under the rule `offset` (eq. 68). Nodes at one point of a surface move
 /// together.
 class SurfaceMover {
  public:
@@ -76,10 +85,9 @@ class SurfaceMover {
   /// The same bits on any number of threads.
   /// @param heights  for each surface one number per point, in the unit of the mesh; 0 where the
   ///                 weight is
-  /// @return         one vector per node of nodes(), in its order
   /// @throws InputError      a number of heights that does not fit
   /// @throws NumericalError  a solver did not converge
-  std::vector<Vec3> move(std::span<const std::vector<double>> heights) const;
+  MovedSurface move(std::span<const std::vector<double>> heights) const;
 
   struct Plan;  ///< defined by the source
 

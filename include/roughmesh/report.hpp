@@ -38,6 +38,7 @@ struct RealizationReport {
   std::int64_t inverted_elements = 0;
   double min_quality = 0;
   double min_quality_before = 0;
+  Index slid_nodes = 0;                 ///< along the surface, so that no face folds
   std::int64_t self_intersections = 0;  ///< pairs of faces that did not intersect in the input
   VolumeMethod volume_method = VolumeMethod::none;
 };

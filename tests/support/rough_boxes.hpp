@@ -51,7 +51,7 @@ inline Moved move(Mesh mesh, const char* group, const Height& height,
   edges[0].images = partners.master;
   const SurfaceMover surface_mover(
       surfaces, edges, {.fixed = {}, .sliding = sliding_on_surfaces(moved.walls, surfaces)});
-  const std::vector<Vec3> displacements = surface_mover.move({&heights, 1});
+  const std::vector<Vec3> displacements = surface_mover.move({&heights, 1}).displacements;
   const MovedVolume volume =
       VolumeMover(moved.mesh, surfaces, moved.walls, last).move(displacements);
   EXPECT_EQ(volume.split, nullptr);
