@@ -2,23 +2,21 @@
 #include "roughmesh/pipeline.hpp"
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "roughmesh/displace.hpp"
-#include "roughmesh/move_volume.hpp"
 #include "roughmesh/walls.hpp"
 
 #include "field_ensemble.hpp"
 #include "parallel.hpp"
 #include "refusals.hpp"
-#include "remesher.hpp"
 #include "rough_surface.hpp"
 #include "stage_timer.hpp"
 #include "surface_report.hpp"
+#include "volume_stage.hpp"
 #include "warnings.hpp"
 
 namespace roughmesh {
@@ -55,12 +53,6 @@ std::vector<Value> at_nodes(const Mesh& mesh, std::span<const Surface> surfaces,
   return result;
 }
 
-std::vector<Vec3> differences(std::span<const Vec3> after, std::span<const Vec3> before) {
-  std::vector<Vec3> result(after.begin(), after.end());
-  for (std::size_t i = 0; i < result.size(); ++i) result[i] -= before[i];
-  return result;
-}
-
 /// Nodes of walls that follow the surfaces; empty where there are none.
 std::vector<std::uint8_t> following_nodes(const Walls& walls, std::span<const Surface> surfaces) {
   if (walls.sliding.empty()) return {};
@@ -69,23 +61,6 @@ std::vector<std::uint8_t> following_nodes(const Walls& walls, std::span<const Su
   for (const Surface& surface : surfaces)
     for (const Index node : surface.nodes) flags[node] = 0;
   return flags;
-}
-
-/// Values at nodes of the input as values at those of a mesh with nodes added, or others.
-/// @param old_nodes  of the first nodes of that mesh; null where they are all those of the input
-template <class Value>
-std::vector<Value> on_nodes_of(const Mesh& mesh, std::vector<Value> values,
-                               const std::vector<Index>* old_nodes, const Value& zero) {
-  if (old_nodes != nullptr) {
-    for (std::size_t i = 0; i < old_nodes->size(); ++i) values[i] = values[(*old_nodes)[i]];
-    values.resize(old_nodes->size());
-  }
-  values.resize(mesh.nodes.size(), zero);
-  return values;
-}
-
-VolumeMethod last_method(const RoughenOptions& options) {
-  return options.volume == VolumeChoice::move ? VolumeMethod::split : VolumeMethod::none;
 }
 
 std::vector<SurfaceReport> describe(const RoughSurfaces& rough) {
@@ -117,13 +92,9 @@ class Run {
         timer_(report.timings, watch),
         surfaces_(timer_.time(&Timings::surface, [&] { return select(options); })),
         walls_(timer_.time(&Timings::volume, [&] { return make_walls(); })),
-        volume_mover_(timer_.time(
-            &Timings::volume,
-            [&] { return VolumeMover(mesh, surfaces_.surfaces, walls_, last_method(options)); })),
-        remesher_(timer_.time(&Timings::volume, [&] { return make_remesher(); })),
+        volume_(mesh, surfaces_, walls_, report, timer_),
         surface_mover_(timer_.time(&Timings::displace, [&] { return make_surface_mover(); })),
         quality_before_(timer_.time(&Timings::check, [&] { return min_quality(mesh); })),
-        enclosure_(timer_.time(&Timings::check, [&] { return Enclosure(mesh); })),
         fields_(surfaces_, options, timer_),
         targets_(timer_.time(&Timings::audit, [&] { return expect_sq(surfaces_, fields_); })),
         checker_(timer_.time(&Timings::check, [&] { return make_checker(); })),
@@ -139,10 +110,13 @@ class Run {
     const MovedSurface moved =
         timer_.time(&Timings::displace, [&] { return surface_mover_.move(heights); });
     detail::warn_of_slides(report_, realization, moved);
-    accept_surface(moved.displacements);
-    const VolumeMethod method = move_volume(moved.displacements);
+    const std::vector<Vec3> nodes = moved_surface(moved.displacements);
+    accept_surface(nodes);
+    const detail::VolumeStage::Result followed =
+        volume_.follow(moved.displacements, nodes, remedy("lower --rms"), rough_);
+    accept_walls(followed.nodes);
     fill_fields(heights);
-    report_.realizations.push_back(describe_realization(method, heights));
+    report_.realizations.push_back(describe_realization(followed.method, heights));
     report_.realizations.back().slid_nodes = moved.n_slid;
     return rough_;
   }
@@ -168,11 +142,6 @@ class Run {
   bool walls_can_slide() const {
     return report_.request.volume == VolumeChoice::move &&
            n_elements(mesh_, surfaces_.surfaces.front().dimension + 1) > 0;
-  }
-
-  std::unique_ptr<const detail::Remesher> make_remesher() const {
-    if (report_.request.volume != VolumeChoice::remesh) return nullptr;
-    return std::make_unique<const detail::Remesher>(mesh_, surfaces_.surfaces, report_.request);
   }
 
   Walls make_walls() const {
@@ -226,65 +195,29 @@ class Run {
   }
 
   /// The surface alone, before anything follows it.
-  void accept_surface(const std::vector<Vec3>& displacements) {
-    rough_.surface_check =
-        timer_.time(&Timings::check, [&] { return checker_.check(moved_surface(displacements)); });
+  void accept_surface(std::span<const Vec3> nodes) {
+    rough_.surface_check = timer_.time(&Timings::check, [&] { return checker_.check(nodes); });
     if (report_.realizations.empty())
       detail::warn_of_input_intersections(report_, rough_.surface_check);
     refuse_surface();
   }
 
   /// The surface once more, with the walls that followed it.
-  void accept_walls() {
+  void accept_walls(std::span<const Vec3> nodes) {
     if (!walls_checker_ || !rough_.surface_check.valid()) return;
-    rough_.surface_check = timer_.time(&Timings::check, [&] {
-      return walls_checker_->check(std::span(rough_.mesh.nodes).first(mesh_.nodes.size()));
-    });
+    rough_.surface_check =
+        timer_.time(&Timings::check, [&] { return walls_checker_->check(nodes); });
     refuse_surface();
   }
 
   void refuse_surface() {
     detail::refuse_invalid(rough_.surface_check, rough_.realization,
-                           detail::remedy(surfaces_.fields, torn_walls(),
-                                          detail::lower_rms(rough_.surface_check, report_.request)),
+                           remedy(detail::lower_rms(rough_.surface_check, report_.request)),
                            report_);
   }
 
-  VolumeMethod move_volume(const std::vector<Vec3>& displacements) {
-    if (remesher_) {
-      take_remeshed(*remesher_, moved_surface(displacements));
-      detail::refuse_invalid(rough_.check, rough_.realization, remedy(), report_);
-      report_remeshed();
-      return VolumeMethod::remesh;
-    }
-    const MovedVolume moved =
-        timer_.time(&Timings::volume, [&] { return volume_mover_.move(displacements); });
-    take_moved(moved);
-    std::string remedy = this->remedy();
-    if (!rough_.check.valid() && remesh_at_last(with_walls(displacements, moved), remedy))
-      return VolumeMethod::remesh;
-    detail::refuse_invalid(rough_.check, rough_.realization, remedy, report_);
-    accept_walls();
-    if (report_.realizations.empty()) detail::warn_of_curved_elements(report_, rough_.check);
-    if (moved.split) detail::warn_of_split(report_, rough_.realization, mesh_, *moved.split);
-    if (moved.method > VolumeMethod::harmonic)
-      detail::add_citations(report_.citations,
-                            {"Garanzha et al. (2021), Foldover-free maps in 50 lines of code, "
-                             "doi:10.1145/3450626.3459847"});
-    return moved.method;
-  }
-
-  std::string remedy() const { return detail::remedy(surfaces_.fields, torn_walls()); }
-
-  void take_moved(const MovedVolume& moved) {
-    const Mesh& smooth = moved.split ? *moved.split : mesh_;
-    if (moved.split || has_own_elements_) rough_.mesh = smooth;  // else only its nodes differ
-    has_own_elements_ = moved.split != nullptr;
-    old_nodes_.reset();
-    rough_.mesh.nodes = moved.nodes;
-    rough_.displacements = differences(moved.nodes, smooth.nodes);
-    rough_.check =
-        timer_.time(&Timings::check, [&] { return check_mesh(smooth, moved.nodes, enclosure_); });
+  std::string remedy(const std::string& lower) const {
+    return detail::remedy(surfaces_.fields, torn_walls(), lower);
   }
 
   /// The surface where it goes, all else where it was.
@@ -295,81 +228,15 @@ class Run {
     return nodes;
   }
 
-  /// Likewise, with the walls where they slid to.
-  std::vector<Vec3> with_walls(const std::vector<Vec3>& displacements,
-                               const MovedVolume& moved) const {
-    std::vector<Vec3> nodes = moved_surface(displacements);
-    for (const SlidingNode& each : walls_.sliding) nodes[each.node] = moved.nodes[each.node];
-    return nodes;
-  }
-
-  void take_remeshed(const detail::Remesher& remesher, const std::vector<Vec3>& moved) {
-    detail::RemeshedVolume remeshed =
-        timer_.time(&Timings::volume, [&] { return remesher.remesh(moved); });
-    rough_.mesh = *remeshed.mesh;
-    old_nodes_ = std::move(remeshed.old_nodes);
-    has_own_elements_ = true;
-    rough_.displacements = on_nodes_of<Vec3>(rough_.mesh, mesh_.nodes, &*old_nodes_, Vec3::Zero());
-    for (std::size_t i = 0; i < old_nodes_->size(); ++i)  // with those that follow on bent edges
-      rough_.displacements[i] = rough_.mesh.nodes[i] - rough_.displacements[i];
-    rough_.check = timer_.time(&Timings::check, [&] {
-      if (dimension(mesh_) == 3) return check_remeshed(rough_.mesh, moved, enclosure_);
-      return check_remeshed(rough_.mesh, rough_.mesh.nodes, Enclosure(rough_.mesh));
-    });
-  }
-
-  void report_remeshed() {
-    detail::warn_of_remeshing(report_, rough_.realization, mesh_, rough_.mesh);
-    if (report_.realizations.empty()) detail::warn_of_curved_elements(report_, rough_.check);
-    detail::add_citations(
-        report_.citations,
-        {"Geuzaine and Remacle (2009), Gmsh, doi:10.1002/nme.2579",
-         "Marot, Pellerin and Remacle (2019), One machine, one minute, three billion tetrahedra, "
-         "doi:10.1002/nme.5987"});
-  }
-
-  /// Where moving its nodes leaves a mesh invalid.
-  /// @param remedy  told why there is no way out here
-  bool remesh_at_last(const std::vector<Vec3>& moved, std::string& remedy) {
-    if (report_.request.volume != VolumeChoice::move || dimension(mesh_) < 3) return false;
-    if (!detail::gmsh_program(report_.request).exists()) {
-      remedy += "; with the gmsh program (--gmsh PATH) its volume would be meshed anew";
-      return false;
-    }
-    const RoughMesh before = rough_;
-    const bool had_own_elements = has_own_elements_;
-    try {
-      take_remeshed(detail::Remesher(mesh_, surfaces_.surfaces, report_.request), moved);
-      if (rough_.check.valid()) {
-        report_remeshed();
-        return true;
-      }
-      remedy += "; meshing its volume anew left it invalid too";
-    } catch (const Error& error) {
-      remedy += fmt::format("; meshing its volume anew failed: {}", error.what());
-    }
-    rough_ = before;
-    has_own_elements_ = had_own_elements;
-    old_nodes_.reset();
-    return false;
-  }
-
   /// At the nodes of the rough mesh, from those of the input.
   void fill_fields(const std::vector<std::vector<double>>& heights) {
-    const std::vector<Index>* const old_nodes = old_nodes_ ? &*old_nodes_ : nullptr;
-    rough_.heights = on_nodes_of<double>(
-        rough_.mesh,
-        at_nodes<double>(
-            mesh_, surfaces_.surfaces, [&](std::size_t s) -> const auto& { return heights[s]; },
-            0.0),
-        old_nodes, 0.0);
-    rough_.normals = on_nodes_of<Vec3>(
-        rough_.mesh,
-        at_nodes<Vec3>(
-            mesh_, surfaces_.surfaces,
-            [&](std::size_t s) -> const auto& { return surfaces_.surfaces[s].normals; },
-            Vec3::Zero()),
-        old_nodes, Vec3::Zero());
+    const std::vector<Surface>& surfaces = surfaces_.surfaces;
+    const auto heights_of = [&](std::size_t s) -> const auto& { return heights[s]; };
+    const auto normals_of = [&](std::size_t s) -> const auto& { return surfaces[s].normals; };
+    rough_.heights = volume_.on_nodes_of<double>(
+        rough_.mesh, at_nodes<double>(mesh_, surfaces, heights_of, 0.0), 0.0);
+    rough_.normals = volume_.on_nodes_of<Vec3>(
+        rough_.mesh, at_nodes<Vec3>(mesh_, surfaces, normals_of, Vec3::Zero()), Vec3::Zero());
   }
 
   RealizationReport describe_realization(VolumeMethod volume_method,
@@ -392,18 +259,14 @@ class Run {
   detail::StageTimer timer_;
   const RoughSurfaces surfaces_;
   const Walls walls_;
-  const VolumeMover volume_mover_;
-  const std::unique_ptr<const detail::Remesher> remesher_;  // where all volumes are meshed anew
+  detail::VolumeStage volume_;
   const SurfaceMover surface_mover_;
   const double quality_before_;
-  const Enclosure enclosure_;
   const FieldEnsemble fields_;
   const std::vector<SqTarget> targets_;                // one for each surface
   const SurfaceChecker checker_;                       // of what does not follow
   const std::optional<SurfaceChecker> walls_checker_;  // of all, where walls slide
   RoughMesh rough_;                                    // the latest
-  bool has_own_elements_ = true;                 // it is not, or not yet, on those of the input
-  std::optional<std::vector<Index>> old_nodes_;  // RemeshedVolume::old_nodes, if it is such
 };
 
 }  // namespace

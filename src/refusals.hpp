@@ -24,7 +24,7 @@ struct TornWalls {
 /// it makes elements smaller.
 /// @param lower  what to do with --rms
 std::string remedy(std::span<const FieldPlan> fields, const TornWalls& walls,
-                   const std::string& lower = "lower --rms");
+                   const std::string& lower);
 
 /// Warns where report.request allows invalid meshes.
 /// @throws CheckError  it does not, and the surface or the mesh is not valid
