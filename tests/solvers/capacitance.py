@@ -5,7 +5,7 @@ A conductor at potential 1, a sphere with rough surface, stands in an earthed bo
 (docs/math.md, eq. 67) roughness changes its mean capacitance; the mean of all realizations must agree, within 4
 standard errors.
 
-usage: capacitance.py SOLVER ORDER SMOOTH.msh REPORT.json
+usage: capacitance.py SOLVER ORDER SMOOTH.msh REPORT.json, meshes of order 1 or 2
        SOLVER is skfem, ngsolve or dolfinx; exit code 77: it is not installed
 """
 import json
@@ -16,7 +16,16 @@ import numpy as np
 from numpy.polynomial import legendre
 
 
+def places_of_groups(file):
+    """Of each group of faces, the places of its nodes, as meshio reads them."""
+    shape = "triangle6" if "triangle6" in file.cells_dict else "triangle"
+    tags = file.cell_data_dict["gmsh:physical"][shape]
+    return {name: set(map(tuple, file.points[np.unique(file.cells_dict[shape][tags == tag])]))
+            for name, (tag, dimension) in file.field_data.items() if dimension == 2}
+
+
 def skfem_capacitance(order):
+    import meshio
     import skfem
     from skfem.helpers import dot, grad
     element = {1: skfem.ElementTetP1, 2: skfem.ElementTetP2}[order]()
@@ -25,8 +34,21 @@ def skfem_capacitance(order):
     def energy(u, v, _):
         return dot(grad(u), grad(v))
 
-    def solve(path):
+    def read(path):
         mesh = skfem.Mesh.load(path)
+        if mesh.boundaries:
+            return mesh
+        # It takes groups of straight faces only.
+        facets = mesh.boundary_facets()
+        corners = mesh.p.T[mesh.facets[:, facets]]  # three by facets by coordinates
+        boundaries = {}
+        for name, places in places_of_groups(meshio.read(path)).items():
+            is_in = np.array([[tuple(x) in places for x in corner] for corner in corners]).all(0)
+            boundaries[name] = facets[is_in]
+        return mesh.with_boundaries(boundaries)
+
+    def solve(path):
+        mesh = read(path)
         basis = skfem.Basis(mesh, element)
         conductor = basis.get_dofs("conductor").all()
         fixed = np.union1d(conductor, basis.get_dofs("earth").all())
@@ -70,17 +92,16 @@ def dolfinx_capacitance(order):
     def read(path):
         """The mesh, and the facets of each group of faces."""
         file = meshio.read(path)
-        domain = ufl.Mesh(ufl.VectorElement("Lagrange", ufl.tetrahedron, 1))
-        cells = file.cells_dict["tetra"].astype(np.int64)
+        is_curved = "tetra10" in file.cells_dict
+        domain = ufl.Mesh(ufl.VectorElement("Lagrange", ufl.tetrahedron, 2 if is_curved else 1))
+        cells = file.cells_dict["tetra10" if is_curved else "tetra"].astype(np.int64)
+        # meshio orders nodes as VTK does.
+        cells = cells[:, dolfinx.cpp.io.perm_vtk(dolfinx.mesh.CellType.tetrahedron, cells.shape[1])]
         mesh = dolfinx.mesh.create_mesh(MPI.COMM_SELF, cells, file.points, domain)
-        tags = file.cell_data_dict["gmsh:physical"]["triangle"]
-        facets = {}
-        for name, (tag, dimension) in file.field_data.items():
-            if dimension == 2:
-                nodes = np.unique(file.cells_dict["triangle"][tags == tag])
-                places = set(map(tuple, file.points[nodes]))
-                facets[name] = dolfinx.mesh.locate_entities_boundary(
-                    mesh, 2, lambda x, places=places: np.array([tuple(p) in places for p in x.T]))
+        facets = {
+            name: dolfinx.mesh.locate_entities_boundary(
+                mesh, 2, lambda x, places=places: np.array([tuple(p) in places for p in x.T]))
+            for name, places in places_of_groups(file).items()}
         return mesh, facets
 
     def solve(path):
