@@ -217,10 +217,11 @@ std::string one_line(std::string text) {
                                    [](const std::string& each) { return each.starts_with("-"); });
   const bool has_verb = *parser.roughen || *parser.info;
   const std::string verb = *parser.info ? "info" : "roughen";
-  throw InputError(fmt::format(
-      "{}: {}", option != extras.end() ? *option : extras.front(),
-      has_verb ? "unknown or too many; `roughmesh " + verb + " --help` lists the options"
-               : "unknown; the verbs are roughen and info"));
+  throw InputError(
+      fmt::format("{}: {}", option != extras.end() ? *option : extras.front(),
+                  has_verb ? "no option of this verb, or one argument too many; `roughmesh " +
+                                 verb + " --help` lists the options"
+                           : "unknown; the verbs are roughen and info"));
 }
 
 /// CLI11 takes its arguments last first.

@@ -81,9 +81,11 @@ void print_surface(const Surface& surface, EdgeRule edges, const std::string& un
                                                        is_curve ? "end points" : "border edges"));
   fmt::print("  {:<34} {:.6g} {}{}\n", measure_of(surface), surface.area, unit,
              is_curve ? "" : "^2");
-  fmt::print("  {:<34} {:.4g} {} (from {:.4g} to {:.4g})\n",
-             is_curve ? "mesh size h (median line)" : "mesh size h (median edge)", h.median, unit,
-             h.min, h.max);
+  fmt::print(
+      "  {:<34} {:.4g} {} (from {:.4g} to {:.4g}){}\n",
+      is_curve ? "mesh size h (median line)" : "mesh size h (median edge)", h.median, unit, h.min,
+      h.max,
+      surface.n_faces() > surface.n_elements ? ", between nodes of elements of order 2" : "");
   fmt::print("  {:<34} {:.4g} {}\n", "shortest correlation length 2.5 h",
              sizes_per_length * h.median, unit);
   if (surface.n_sharp_edges > 0)

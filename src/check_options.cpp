@@ -227,8 +227,9 @@ void check_tolerance(const RoughenOptions& o) {
 void check_volume(const RoughenOptions& o) {
   if (!o.box) return;
   if (o.volume != VolumeChoice::remesh)
-    throw InputError(
-        fmt::format("--box: {:g}; without --volume remesh no volume is made; give both", *o.box));
+    throw InputError(fmt::format(
+        "--box: {:g}; the space up to the box is meshed by --volume remesh only; give that too",
+        *o.box));
   require(std::isfinite(*o.box) && *o.box > 1, "--box", *o.box, "above 1");
 }
 

@@ -56,7 +56,9 @@ std::string describe(const CheckedFaces& faces, const detail::Defect& defect) {
   const std::string first = describe(faces, defect.a), second = describe(faces, defect.b);
   switch (defect.kind) {
     case SurfaceDefect::intersection:
-      return fmt::format("{} intersects {}", first, second);
+      // Facets of one element of order 2.
+      return first == second ? fmt::format("{} intersects itself", first)
+                             : fmt::format("{} intersects {}", first, second);
     case SurfaceDefect::folded:
       return fmt::format("{} is folded over", first);
     case SurfaceDefect::collapsed:

@@ -2,6 +2,8 @@
 #include "roughmesh/displace.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <mutex>
 #include <utility>
 
 #include <fmt/format.h>
@@ -34,13 +36,38 @@ void check_options(std::span<const Surface> surfaces, std::span<const EdgeOption
   }
 }
 
+// Share of a height that is round-off.
+constexpr double round_off = 1e-12;
+
+// Some normal has a part across a plane in which its node slides.
+bool leads_off(const Surface& surface, std::span<const SlidingNode> sliding) {
+  return std::any_of(sliding.begin(), sliding.end(), [&](const SlidingNode& each) {
+    const auto at = std::lower_bound(surface.nodes.begin(), surface.nodes.end(), each.node);
+    if (at == surface.nodes.end() || *at != each.node) return true;  // told of by EdgeMotion
+    const auto i = static_cast<std::size_t>(at - surface.nodes.begin());
+    const Vec3& normal = surface.normals[surface.point_of_node[i]];
+    return std::abs(normal.dot(each.normal.normalized())) > round_off;
+  });
+}
+
 // Every node moves along the normal of its point.
 bool has_no_edges(std::span<const Surface> surfaces, std::span<const EdgeOptions> options,
                   const NodeConstraints& constraints) {
-  if (surfaces.size() > 1 || !constraints.sliding.empty()) return false;
   const Surface& surface = surfaces.front();
+  if (surfaces.size() > 1 || leads_off(surface, constraints.sliding)) return false;
   const bool is_smooth = surface.n_sharp_edges == 0 && surface.n_nonmanifold_edges == 0;
   return options.front().rule == EdgeRule::average || is_smooth;
+}
+
+void require_of_surfaces(const NodeConstraints& constraints, std::span<const Index> nodes) {
+  const auto require = [&](Index node) {
+    if (!std::binary_search(nodes.begin(), nodes.end(), node))
+      throw InputError(fmt::format(
+          "node number {} has a constraint but is on no rough surface; leave it out", node));
+  };
+  for (const Index node : constraints.fixed) require(node);
+  for (const Index node : constraints.anchored) require(node);
+  for (const SlidingNode& each : constraints.sliding) require(each.node);
 }
 
 /// @param nodes  ascending
@@ -93,20 +120,29 @@ struct SurfaceMover::Plan {
   std::vector<EdgeOptions> options;
   NodeConstraints constraints;
   std::vector<Index> nodes, fixed_points = {};
-  std::unique_ptr<const detail::EdgeMotion> edges = nullptr;  // none where there are none
+  bool has_edges = false;
 
-  std::unique_ptr<const detail::EdgeMotion> edge_motion() const {
-    return std::make_unique<const detail::EdgeMotion>(surfaces, options, constraints, nodes);
+  // Where there are no edges only faces that would fold need it.
+  const detail::EdgeMotion& edges() const {
+    std::call_once(once, [&] {
+      made = std::make_unique<const detail::EdgeMotion>(surfaces, options, constraints, nodes);
+    });
+    return *made;
   }
+
+  mutable std::once_flag once = {};
+  mutable std::unique_ptr<const detail::EdgeMotion> made = nullptr;
 };
 
 SurfaceMover::SurfaceMover(std::span<const Surface> surfaces, std::span<const EdgeOptions> options,
                            const NodeConstraints& constraints) {
   check_options(surfaces, options);
-  auto plan = std::make_unique<Plan>(
-      Plan{surfaces, {options.begin(), options.end()}, constraints, moved_nodes(surfaces)});
-  if (!has_no_edges(surfaces, options, constraints))
-    plan->edges = plan->edge_motion();
+  auto plan = std::make_unique<Plan>(surfaces, std::vector(options.begin(), options.end()),
+                                     constraints, moved_nodes(surfaces));
+  require_of_surfaces(constraints, plan->nodes);
+  plan->has_edges = !has_no_edges(surfaces, options, constraints);
+  if (plan->has_edges)
+    plan->edges();
   else
     plan->fixed_points = points_of(surfaces.front(), constraints.fixed);
   plan_ = std::move(plan);
@@ -123,13 +159,13 @@ MovedSurface SurfaceMover::move(std::span<const std::vector<double>> heights) co
   require_one_each(surfaces, heights.size(), "heights");
   for (std::size_t s = 0; s < surfaces.size(); ++s)
     require_size(surfaces[s], heights[s].size(), "heights");
-  if (plan_->edges) return plan_->edges->move(heights);
+  if (plan_->has_edges) return plan_->edges().move(heights);
   const Surface& surface = surfaces.front();
   std::vector<Vec3> at_points = displace(surface, heights.front());
   for (const Index point : plan_->fixed_points) at_points[point] = Vec3::Zero();
-  if (surface.dimension == 2 &&
+  if (surface.dimension == 2 && plan_->options.front().rule == EdgeRule::offset &&
       detail::has_turned_face(faces_of(surface), surface.points, at_points))
-    return plan_->edge_motion()->move(heights);
+    return plan_->edges().unfolded(at_points);
   MovedSurface moved;
   moved.displacements.reserve(plan_->nodes.size());
   for (const Index point : surface.point_of_node) moved.displacements.push_back(at_points[point]);

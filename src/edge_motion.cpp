@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-
-#include <fmt/format.h>
+#include <utility>
 
 #include "disjoint_sets.hpp"
 #include "unfolding.hpp"
@@ -20,11 +19,19 @@ constexpr double little_slide = 0.05;
 Vec3 along_surface(const Vec3& u, const Vec3& normal) { return u - normal.dot(u) * normal; }
 
 std::size_t place_of(Index node, std::span<const Index> moved) {
-  const auto at = std::lower_bound(moved.begin(), moved.end(), node);
-  if (at == moved.end() || *at != node)
-    throw InputError(fmt::format(
-        "node number {} has a constraint but is on no rough surface; leave it out", node));
-  return static_cast<std::size_t>(at - moved.begin());
+  return static_cast<std::size_t>(std::lower_bound(moved.begin(), moved.end(), node) -
+                                  moved.begin());
+}
+
+// Orthonormal, without those that are combinations of others but for round-off.
+std::vector<Vec3> orthonormal(std::span<const Vec3> directions) {
+  constexpr double new_direction = 1e-6;
+  std::vector<Vec3> result;
+  for (Vec3 each : directions) {
+    for (const Vec3& other : result) each -= other.dot(each) * other;
+    if (result.size() < 3 && each.norm() > new_direction) result.push_back(each.normalized());
+  }
+  return result;
 }
 
 // Vertices whose points have the same number; classes of one are left out.
@@ -51,7 +58,7 @@ EdgeMotion::EdgeMotion(std::span<const Surface> surfaces, std::span<const EdgeOp
   find_still(surfaces, options, constraints.fixed, moved);
   const Images images = image_classes(options, joined_);
   find_bound(across(constraints, moved), images);
-  find_sliding(options, images);
+  find_sliding(options, images, constraints.anchored, moved);
   prepare_chains();
   prepare_faces(options);
 }
@@ -111,19 +118,24 @@ void EdgeMotion::find_bound(const std::vector<std::vector<Vec3>>& across, const 
 }
 
 // Images would have to slide alike, ends of surfaces would change their shape.
-void EdgeMotion::find_sliding(std::span<const EdgeOptions> options, const Images& images) {
-  can_slide_.assign(joined_.positions.size(), 0);
-  if (joined_.dimension == 1) return;
+void EdgeMotion::find_sliding(std::span<const EdgeOptions> options, const Images& images,
+                              std::span<const Index> anchored, std::span<const Index> moved) {
+  can_slide_.assign(joined_.positions.size(), joined_.dimension == 2 ? 1 : 0);
+  const auto hold = [&](Index vertex) { can_slide_[vertex] = 0; };
+  for (std::size_t i = 0; i < sectors_.all.size(); ++i)
+    if (is_moving_[i] == 0 || options[sectors_.all[i].surface].rule != EdgeRule::offset)
+      hold(sectors_.all[i].vertex);
   for (Index v = 0; v < joined_.n_vertices(); ++v)
-    can_slide_[v] =
-        is_still_[v] == 0 && !(is_bound(v) && bound_[bound_of_vertex_[v]].least.is_rigid()) ? 1 : 0;
-  for (const Sector& sector : sectors_.all)
-    if (options[sector.surface].rule != EdgeRule::offset) can_slide_[sector.vertex] = 0;
+    if (is_still_[v] != 0) hold(v);
   for (Index e = 0; e < joined_.edges.size(); ++e)
     if (sectors_.kind_of_edge[e] == EdgeKind::border)
-      for (const Index vertex : joined_.edges.points[e]) can_slide_[vertex] = 0;
+      for (const Index vertex : joined_.edges.points[e]) hold(vertex);
   for (const std::vector<Index>& vertices : images)
-    for (const Index vertex : vertices) can_slide_[vertex] = 0;
+    for (const Index vertex : vertices) hold(vertex);
+  for (const Index node : anchored) {
+    const Index vertex = joined_.vertex_of_node[place_of(node, moved)];
+    if (sectors_.at(vertex).size() == 1) hold(vertex);
+  }
 }
 
 // Edge curves; of a planar mesh, the smooth pieces of the curve itself.
@@ -255,19 +267,38 @@ void EdgeMotion::stretch_faces(std::vector<Vec3>& u) const {
   }
 }
 
-void EdgeMotion::unfold(std::vector<Vec3>& u) const {
-  if (joined_.dimension == 1 || !has_turned_face(joined_.view(), joined_.positions, u)) return;
-  SlidingSurface surface{joined_.positions, joined_.view(), can_slide_, {}};
+// Of vertices that can slide: the normals of the pieces of surface there, and of walls.
+std::vector<SlidingNode> EdgeMotion::directions_to_keep() const {
+  std::vector<SlidingNode> result;
   for (Index v = 0; v < joined_.n_vertices(); ++v) {
     if (can_slide_[v] == 0) continue;
-    if (!is_bound(v)) {
-      surface.across.push_back({v, sectors_.at(v).front().normal});
-      continue;
-    }
-    for (const Vec3& direction : bound_[bound_of_vertex_[v]].least.bound_directions())
-      surface.across.push_back({v, direction});
+    std::vector<Vec3> directions;
+    if (is_bound(v)) directions = bound_[bound_of_vertex_[v]].least.bound_directions();
+    for (const Sector& sector : sectors_.at(v)) directions.push_back(sector.normal);
+    for (const Vec3& each : orthonormal(directions)) result.push_back({v, each});
   }
-  detail::unfold(surface, u);
+  return result;
+}
+
+MovedSurface EdgeMotion::unfold(std::vector<Vec3> u) const {
+  const std::vector<Vec3> before = u;
+  if (joined_.dimension == 2 && has_turned_face(joined_.view(), joined_.positions, u))
+    detail::unfold({joined_.positions, joined_.view(), can_slide_, directions_to_keep()}, u);
+  MovedSurface moved;
+  for (const Index vertex : joined_.vertex_of_node) {
+    moved.displacements.push_back(u[vertex]);
+    const double slide = (u[vertex] - before[vertex]).norm();
+    moved.n_slid += slide > 0 ? 1 : 0;
+    moved.farthest_slide = std::max(moved.farthest_slide, slide);
+  }
+  return moved;
+}
+
+MovedSurface EdgeMotion::unfolded(std::span<const Vec3> at_points) const {
+  std::vector<Vec3> u(joined_.positions.size(), Vec3::Zero());
+  for (std::size_t i = 0; i < at_points.size(); ++i)
+    u[joined_.vertex_of_point.front()[i]] = at_points[i];
+  return unfold(std::move(u));
 }
 
 MovedSurface EdgeMotion::move(std::span<const std::vector<double>> heights) const {
@@ -281,16 +312,7 @@ MovedSurface EdgeMotion::move(std::span<const std::vector<double>> heights) cons
   slide_along_chains(u);
   equal_images(u);
   stretch_faces(u);
-  const std::vector<Vec3> before = u;
-  unfold(u);
-  MovedSurface moved;
-  for (const Index vertex : joined_.vertex_of_node) {
-    moved.displacements.push_back(u[vertex]);
-    const double slide = (u[vertex] - before[vertex]).norm();
-    moved.n_slid += slide > 0 ? 1 : 0;
-    moved.farthest_slide = std::max(moved.farthest_slide, slide);
-  }
-  return moved;
+  return unfold(std::move(u));
 }
 
 }  // namespace roughmesh::detail

@@ -27,6 +27,9 @@ class EdgeMotion {
 
   MovedSurface move(std::span<const std::vector<double>> heights) const;
 
+  /// Of one surface without edges, from the displacements of its points.
+  MovedSurface unfolded(std::span<const Vec3> at_points) const;
+
  private:
   struct Bound {
     Index vertex = 0;
@@ -41,7 +44,8 @@ class EdgeMotion {
   std::vector<std::vector<Vec3>> across(const NodeConstraints& constraints,
                                         std::span<const Index> moved) const;
   void find_bound(const std::vector<std::vector<Vec3>>& across, const Images& images);
-  void find_sliding(std::span<const EdgeOptions> options, const Images& images);
+  void find_sliding(std::span<const EdgeOptions> options, const Images& images,
+                    std::span<const Index> anchored, std::span<const Index> moved);
   void prepare_chains();
   void prepare_faces(std::span<const EdgeOptions> options);
   std::vector<std::array<Index, 3>> faces_to_stretch(std::span<const std::uint8_t> is_inner) const;
@@ -56,7 +60,8 @@ class EdgeMotion {
   void slide_along_chains(std::vector<Vec3>& u) const;
   void equal_images(std::vector<Vec3>& u) const;
   void stretch_faces(std::vector<Vec3>& u) const;
-  void unfold(std::vector<Vec3>& u) const;
+  std::vector<SlidingNode> directions_to_keep() const;
+  MovedSurface unfold(std::vector<Vec3> u) const;
 
   JoinedSurfaces joined_;
   Sectors sectors_;

@@ -61,10 +61,10 @@ class Assembly {
 
   void add_block(const ElementType& type, const std::string& group, std::vector<Index> nodes) {
     const int dim = dimension(type.shape);
-    Tag entity = 0;
+    NewTags entities("entity");
     for (const ElementBlock& block : mesh_.blocks)
-      if (dimension(block.type.shape) == dim) entity = std::max(entity, block.entity);
-    ElementBlock block{type, entity + 1, {add_group(dim, group)}, std::move(nodes), {}};
+      if (dimension(block.type.shape) == dim) entities.keep_off(block.entity);
+    ElementBlock block{type, entities.next(), {add_group(dim, group)}, std::move(nodes), {}};
     block.tags.resize(block.nodes.size() / static_cast<std::size_t>(type.n_nodes));
     for (Tag& tag : block.tags) tag = element_tags_.next();
     mesh_.blocks.push_back(std::move(block));
@@ -89,11 +89,12 @@ class Assembly {
 
  private:
   Tag add_group(int dim, const std::string& group) {
-    Tag largest = 0;
+    NewTags tags("group");
     for (const PhysicalGroup& each : mesh_.groups)
-      if (each.dimension == dim) largest = std::max(largest, each.tag);
-    mesh_.groups.push_back({dim, largest + 1, group});
-    return largest + 1;
+      if (each.dimension == dim) tags.keep_off(each.tag);
+    const Tag tag = tags.next();
+    mesh_.groups.push_back({dim, tag, group});
+    return tag;
   }
 
   Mesh mesh_;

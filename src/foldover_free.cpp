@@ -91,7 +91,7 @@ Eigen::Matrix3d regular(const Eigen::Matrix3d& shape) {
   return sum / 6 * unit;
 }
 
-// Edges from the first corner, one a column, and whether a corner is new.
+// Edges from the first corner, one a column.
 template <int dim, int space>
 Eigen::Matrix<double, space, dim> rest_edges(const Frame<space>& frame, const Patch& patch,
                                              const Simplex& simplex, const Simplices& simplices) {

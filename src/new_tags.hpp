@@ -16,7 +16,7 @@ namespace roughmesh::detail {
 /// Numbers that follow the largest one in use.
 class NewTags {
  public:
-  /// @param what  for the message: "node" or "element"
+  /// @param what  for the message: "node", "element", ...
   explicit NewTags(const char* what) : what_(what) {}
 
   void keep_off(Tag used) { last_ = std::max(last_, used); }
@@ -27,9 +27,10 @@ class NewTags {
   /// @throws InputError  there is none left
   Tag next() {
     if (last_ == std::numeric_limits<Tag>::max())
-      throw InputError(fmt::format(
-          "{} {} has the largest number there is, and new {}s need larger ones; renumber the file",
-          what_, last_, what_));
+      throw InputError(
+          fmt::format("{} {} has the largest number there is, and a new {} needs a larger one; "
+                      "renumber the file",
+                      what_, last_, what_));
     return ++last_;
   }
 

@@ -11,6 +11,7 @@
 #include "roughmesh/walls.hpp"
 
 #include "field_ensemble.hpp"
+#include "new_tags.hpp"
 #include "parallel.hpp"
 #include "refusals.hpp"
 #include "rough_surface.hpp"
@@ -140,8 +141,11 @@ class Run {
 
   /// Something behind them follows.
   bool walls_can_slide() const {
-    return report_.request.volume == VolumeChoice::move &&
-           n_elements(mesh_, surfaces_.surfaces.front().dimension + 1) > 0;
+    return report_.request.volume == VolumeChoice::move && has_volumes();
+  }
+
+  bool has_volumes() const {
+    return n_elements(mesh_, surfaces_.surfaces.front().dimension + 1) > 0;
   }
 
   Walls make_walls() const {
@@ -151,14 +155,28 @@ class Run {
                        .period = detail::period_of(surfaces_)});
   }
 
+  /// On walls that stay, and on lines and points of the mesh.
+  std::vector<Index> anchored_nodes() const {
+    std::vector<std::uint8_t> flags(mesh_.nodes.size(), 0);
+    for (const Index node : walls_.torn) flags[node] = 1;
+    for (const ElementBlock& block : mesh_.blocks)
+      if (dimension(block.type.shape) < surfaces_.surfaces.front().dimension)
+        for (const Index node : block.nodes) flags[node] = 1;
+    std::vector<Index> nodes = moved_nodes(surfaces_.surfaces);
+    std::erase_if(nodes, [&](Index node) { return flags[node] == 0; });
+    return nodes;
+  }
+
   SurfaceMover make_surface_mover() const {
     return {surfaces_.surfaces, detail::edge_options(surfaces_),
             NodeConstraints{.fixed = detail::fixed_nodes(surfaces_, mesh_),
-                            .sliding = sliding_on_surfaces(walls_, surfaces_.surfaces)}};
+                            .sliding = sliding_on_surfaces(walls_, surfaces_.surfaces),
+                            .anchored = anchored_nodes()}};
   }
 
   detail::TornWalls torn_walls() const {
-    return {static_cast<Index>(walls_.torn.size()), report_.request.volume == VolumeChoice::remesh};
+    return {static_cast<Index>(walls_.torn.size()),
+            report_.request.volume == VolumeChoice::remesh && has_volumes()};
   }
 
   SurfaceChecker make_checker() const {
@@ -212,8 +230,17 @@ class Run {
 
   void refuse_surface() {
     detail::refuse_invalid(rough_.surface_check, rough_.realization,
-                           remedy(detail::lower_rms(rough_.surface_check, report_.request)),
+                           remedy(detail::lower_rms(rough_.surface_check, report_.request) +
+                                  (has_sharp_edges() ? ", hold sharp edges (--edges fix)" : "")),
                            report_);
+  }
+
+  bool has_sharp_edges() const {
+    for (std::size_t s = 0; s < surfaces_.surfaces.size(); ++s)
+      if (surfaces_.surfaces[s].n_sharp_edges > 0 &&
+          surfaces_.plans[s].request.edges != EdgeRule::fix)
+        return true;
+    return false;
   }
 
   std::string remedy(const std::string& lower) const {
@@ -289,10 +316,9 @@ Mesh output_sample(const Mesh& mesh, const RoughenOptions& options) {
   Mesh sample = mesh;
   if (options.volume != VolumeChoice::remesh || mesh.nodes.size() < 4) return sample;
   // Its number and entity are free: the sample differs from the file that was read.
-  Tag tag = 0;
-  for (const ElementBlock& block : mesh.blocks)
-    for (const Tag each : block.tags) tag = std::max(tag, each);
-  sample.blocks.push_back({{ElementShape::tetrahedron, 1, 4}, 0, {}, {0, 1, 2, 3}, {tag + 1}});
+  detail::NewTags tags("element");
+  for (const ElementBlock& block : mesh.blocks) tags.keep_off(block.tags);
+  sample.blocks.push_back({{ElementShape::tetrahedron, 1, 4}, 0, {}, {0, 1, 2, 3}, {tags.next()}});
   return sample;
 }
 

@@ -140,8 +140,9 @@ Choice everything(const Candidates& candidates) {
 Choice default_choice(const Candidates& candidates) {
   const std::vector<PhysicalGroup> groups = groups_of(candidates.mesh, candidates.dimension);
   if (groups.size() > 1)
-    throw InputError("several groups could become rough, choose among them; " +
-                     list_of_choices(candidates));
+    throw InputError(
+        "several groups could become rough; choose with --group, more than once or `all`; " +
+        list_of_choices(candidates));
   if (groups.empty()) {
     const int largest = dimension(candidates.mesh);
     if (largest > faces_dimension)

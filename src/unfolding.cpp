@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <iterator>
+#include <utility>
 
 #include "foldover_free.hpp"
 #include "parallel.hpp"
@@ -30,8 +32,9 @@ Corners moved(Corners corners, std::span<const Index> face, std::span<const Vec3
   return corners;
 }
 
-// Of a quadrangle the triangles at its corners (docs/math.md, eq. 37).
-std::vector<Simplex> triangles_of(const FaceView& faces) {
+// Of a quadrangle the triangles at its corners (docs/math.md, eq. 37). Flat ones cannot be
+// unfolded.
+std::vector<Simplex> triangles_of(const FaceView& faces, std::span<const Vec3> positions) {
   std::vector<Simplex> triangles;
   for (Index f = 0; f < faces.size(); ++f) {
     const auto corners = faces.face(f);
@@ -39,6 +42,7 @@ std::vector<Simplex> triangles_of(const FaceView& faces) {
     for (std::size_t k = 0; k < (n == 3 ? 1 : n); ++k)
       triangles.push_back({corners[(k + n - 1) % n], corners[k], corners[(k + 1) % n], -1});
   }
+  std::erase_if(triangles, [&](const Simplex& t) { return is_flat(positions, t); });
   return triangles;
 }
 
@@ -49,15 +53,22 @@ bool is_turned(const Simplex& triangle, std::span<const Vec3> positions,
   return is_turned(before, moved(before, corners, displacements));
 }
 
-// Vertices within some layers of triangles around the turned ones.
-NodeFlags near_turned(std::span<const Simplex> triangles, std::span<const Vec3> positions,
-                      std::span<const Vec3> displacements, int n_layers) {
-  NodeFlags is_near(positions.size(), 0);
+std::vector<Simplex> turned(std::span<const Simplex> triangles, std::span<const Vec3> positions,
+                            std::span<const Vec3> displacements) {
+  std::vector<Simplex> result;
+  std::copy_if(triangles.begin(), triangles.end(), std::back_inserter(result),
+               [&](const Simplex& t) { return is_turned(t, positions, displacements); });
+  return result;
+}
+
+// Vertices of some triangles, and those within some layers of all around them.
+NodeFlags near(std::span<const Simplex> some, std::span<const Simplex> triangles,
+               std::size_t n_vertices, int n_layers) {
+  NodeFlags is_near(n_vertices, 0);
   const auto mark = [&](const Simplex& t, NodeFlags& flags) {
     for (std::size_t k = 0; k < 3; ++k) flags[t[k]] = 1;
   };
-  for (const Simplex& t : triangles)
-    if (is_turned(t, positions, displacements)) mark(t, is_near);
+  for (const Simplex& t : some) mark(t, is_near);
   for (int layer = 0; layer < n_layers; ++layer) {
     NodeFlags next = is_near;
     for (const Simplex& t : triangles)
@@ -65,6 +76,12 @@ NodeFlags near_turned(std::span<const Simplex> triangles, std::span<const Vec3> 
     is_near = std::move(next);
   }
   return is_near;
+}
+
+std::vector<Vec3> sum(std::span<const Vec3> a, std::span<const Vec3> b) {
+  std::vector<Vec3> result(a.begin(), a.end());
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] += b[i];
+  return result;
 }
 
 }  // namespace
@@ -84,19 +101,23 @@ bool has_turned_face(const FaceView& faces, std::span<const Vec3> positions,
 }
 
 void unfold(const SlidingSurface& surface, std::vector<Vec3>& displacements) {
-  const std::vector<Simplex> triangles = triangles_of(surface.faces);
+  const std::vector<Simplex> triangles = triangles_of(surface.faces, surface.positions);
   const Simplices simplices{.rest = surface.positions,
                             .all = triangles,
                             .ties = {.sliding = surface.across, .images = {}}};
+  std::vector<Simplex> left = turned(triangles, surface.positions, displacements);
   for (const int n_layers : layers_of_rounds) {
-    NodeFlags is_free = near_turned(triangles, surface.positions, displacements, n_layers);
+    if (left.empty()) return;
+    NodeFlags is_free = near(left, triangles, surface.positions.size(), n_layers);
     for (std::size_t v = 0; v < is_free.size(); ++v) is_free[v] &= surface.can_slide[v];
-    std::vector<Vec3> places(surface.positions.begin(), surface.positions.end());
-    for (std::size_t v = 0; v < places.size(); ++v) places[v] += displacements[v];
-    const std::vector<Vec3> before = places;
-    const bool is_done = untangle(simplices, is_free, places);
-    for (std::size_t v = 0; v < places.size(); ++v) displacements[v] += places[v] - before[v];
-    if (is_done) return;
+    const std::vector<Vec3> before = sum(surface.positions, displacements);
+    std::vector<Vec3> places = before, slid = displacements;
+    untangle(simplices, is_free, places);
+    for (std::size_t v = 0; v < slid.size(); ++v) slid[v] += places[v] - before[v];
+    std::vector<Simplex> still = turned(triangles, surface.positions, slid);
+    if (still.size() >= left.size()) continue;
+    left = std::move(still);
+    displacements = std::move(slid);
   }
 }
 

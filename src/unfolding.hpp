@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Faces that heights would fold over: nodes slide along the surface until none is.
+// Faces that heights would fold over: nodes slide along the surface until none is, if they can.
 #pragma once
 
 #include <array>
@@ -28,7 +28,8 @@ struct SlidingSurface {
 };
 
 /// Slides vertices around turned faces by as little distortion as that takes (docs/math.md,
-/// eq. 68): those within 4 layers of faces, then within 12. The same bits on any number of threads.
+/// eq. 68): those within 4 layers of faces, then within 12, as long as that leaves fewer of them
+/// turned. The same bits on any number of threads.
 /// @param displacements  with the slides on return
 void unfold(const SlidingSurface& surface, std::vector<Vec3>& displacements);
 

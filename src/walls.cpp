@@ -26,8 +26,6 @@ constexpr double smooth_sine = 0.64;
 constexpr double new_direction = 1e-4;
 // Sine of an angle between a line and a plane that it lies in.
 constexpr double in_plane = 1e-5;
-// Share of a height that is round-off.
-constexpr double round_off = 1e-12;
 
 // Directions that a node cannot move along, orthonormal.
 struct Directions {
@@ -196,10 +194,10 @@ void keep_borders(const Mesh& mesh, const Patched& walls, const Flags& is_rough,
 }
 
 // Lines and points of the mesh in a sliding wall are features that a user may have named.
-void keep_features(const Mesh& mesh, const Flags& is_rough, int face_dimension,
-                   NodeDirections& directions) {
+void keep_features(const Mesh& mesh, const Flags& is_wall, const Flags& is_rough,
+                   int face_dimension, NodeDirections& directions) {
   const auto keep_line = [&](Index a, Index b) {
-    if (is_rough[a] != 0 && is_rough[b] != 0) return;
+    if (is_wall[a] == 0 || is_wall[b] == 0 || (is_rough[a] != 0 && is_rough[b] != 0)) return;
     const Vec3 along = (mesh.nodes[b] - mesh.nodes[a]).normalized();
     for (const Index node : {a, b}) {
       if (!directions.has(node)) continue;
@@ -233,7 +231,7 @@ void slide(const Mesh& mesh, std::span<const Surface> surfaces, std::span<const 
       directions.add(node, patched.found.patches[patch].normal);
   });
   keep_borders(mesh, patched, is_rough, surfaces.front().plane_normal, directions);
-  keep_features(mesh, is_rough, surfaces.front().dimension, directions);
+  keep_features(mesh, walls.is_wall, is_rough, surfaces.front().dimension, directions);
 }
 
 // Nodes that move alike cannot do what one of them cannot.
@@ -310,20 +308,12 @@ Walls find_walls(const Mesh& mesh, std::span<const Surface> surfaces, const Wall
 
 std::vector<SlidingNode> sliding_on_surfaces(const Walls& walls,
                                              std::span<const Surface> surfaces) {
-  bool leads_off = surfaces.size() > 1;
+  std::vector<std::uint8_t> is_rough(walls.is_wall.size(), 0);
+  for (const Surface& surface : surfaces)
+    for (const Index node : surface.nodes) is_rough[node] = 1;
   std::vector<SlidingNode> result;
-  for (const Surface& surface : surfaces) {
-    leads_off = leads_off || surface.n_sharp_edges > 0 || surface.n_nonmanifold_edges > 0;
-    for (const SlidingNode& each : walls.sliding) {
-      const auto at = std::lower_bound(surface.nodes.begin(), surface.nodes.end(), each.node);
-      if (at == surface.nodes.end() || *at != each.node) continue;
-      const auto i = static_cast<std::size_t>(at - surface.nodes.begin());
-      const Vec3& normal = surface.normals[surface.point_of_node[i]];
-      leads_off = leads_off || std::abs(normal.dot(each.normal)) > round_off;
-      result.push_back(each);
-    }
-  }
-  if (!leads_off) result.clear();
+  std::copy_if(walls.sliding.begin(), walls.sliding.end(), std::back_inserter(result),
+               [&](const SlidingNode& each) { return is_rough[each.node] != 0; });
   return result;
 }
 

@@ -82,7 +82,9 @@ TEST(SurfaceGroups, ErrorsNameTheGroupAndTheChoice) {
             "there is no physical group '99999999999999999999'; " + choice);
   EXPECT_EQ(message({"inside"}), "physical group 'inside' has dimension 3, not 2; " + choice);
   EXPECT_EQ(message({"empty"}), "physical group 'empty' has no element; " + choice);
-  EXPECT_EQ(message({}), "several groups could become rough, choose among them; " + choice);
+  EXPECT_EQ(
+      message({}),
+      "several groups could become rough; choose with --group, more than once or `all`; " + choice);
 }
 
 TEST(SurfaceGroups, ALongListIsCutShort) {

@@ -211,8 +211,9 @@ TEST(Curve, GroupsOfAPlanarMesh) {
   const std::string choice =
       "groups of lines: hole (1), interface (2), rim (3); surface groups, which move out of the "
       "plane: core (1), shell (2)";
-  EXPECT_EQ(message_of(mesh, {}),
-            "several groups could become rough, choose among them; " + choice);
+  EXPECT_EQ(
+      message_of(mesh, {}),
+      "several groups could become rough; choose with --group, more than once or `all`; " + choice);
   EXPECT_EQ(message_of(mesh, {"gold"}), "there is no physical group 'gold'; " + choice);
   EXPECT_EQ(message_of(mesh, {"rim", "shell"}),
             "physical groups rim and shell (2) have dimensions 1 and 2; choose groups of one "

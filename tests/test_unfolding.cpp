@@ -217,3 +217,72 @@ TEST(Unfolding, EndsWhereThereIsNoWay) {
   const MovedSurface moved = valley.move(EdgeRule::offset);
   for (const Vec3& u : moved.displacements) EXPECT_TRUE(u.allFinite());
 }
+
+// An inner wall across the valley, in whose plane all normals lie: its nodes slide along it.
+TEST(Unfolding, NodesOnAWallSlideInItsPlane) {
+  const Lifted valley(0.12);
+  NodeConstraints constraints;
+  std::vector<Index> on_wall, anchored;
+  for (const Index node : valley.surface.nodes) {
+    const double y = valley.mesh.nodes[node].y();
+    if (std::abs(y - width / 2) < 1e-9) on_wall.push_back(node);
+    if (std::abs(y - width / 4) < 1e-9) anchored.push_back(node);
+  }
+  for (const Index node : on_wall) constraints.sliding.push_back({node, Vec3::UnitY()});
+  constraints.anchored = anchored;
+  const EdgeOptions options{.sharp_angle = 1.5};
+  const MovedSurface moved = SurfaceMover(test::only(valley.surface), {&options, 1}, constraints)
+                                 .move({&valley.heights, 1});
+  const MovedSurface along_normals = valley.move(EdgeRule::average);
+  const auto place = [&](Index node) {
+    return static_cast<std::size_t>(
+        std::lower_bound(valley.surface.nodes.begin(), valley.surface.nodes.end(), node) -
+        valley.surface.nodes.begin());
+  };
+  EXPECT_GT(moved.n_slid, 0);
+  double farthest = 0;
+  for (const Index node : on_wall) {
+    const std::size_t i = place(node);
+    EXPECT_NEAR(moved.displacements[i].y(), along_normals.displacements[i].y(), 1e-15);
+    farthest = std::max(farthest, (moved.displacements[i] - along_normals.displacements[i]).norm());
+  }
+  EXPECT_GT(farthest, 1e-3);
+  for (const Index node : anchored)
+    EXPECT_EQ(moved.displacements[place(node)], along_normals.displacements[place(node)]);
+}
+
+// What a mask holds at an edge stays where it is, whatever the faces beside it do.
+TEST(Unfolding, MaskedPointsOfAnEdgeStayInTheirFace) {
+  const Mesh mesh = test::l_block(8);
+  const Surface surface = select_surface(mesh, {.groups = {"all"}});
+  EdgeOptions options;
+  std::vector<double> heights;
+  for (const Vec3& x : surface.points) {
+    options.weights.push_back(x.z() < 0.5 ? 1 : 0);
+    heights.push_back(options.weights.back() * 0.16 *
+                      std::sin(16 * x.x() + 14 * x.y() - 15 * x.z() + 1));
+  }
+  const MovedSurface moved = SurfaceMover(test::only(surface), {&options, 1}).move({&heights, 1});
+  ASSERT_GT(moved.n_slid, 0);
+  for (std::size_t i = 0; i < moved.displacements.size(); ++i) {
+    if (options.weights[surface.point_of_node[i]] > 0) continue;
+    EXPECT_EQ(moved.displacements[i], Vec3::Zero());
+  }
+}
+
+TEST(Unfolding, WhatDoesNotHelpIsNotKept) {
+  const Lifted valley(40);
+  const std::int64_t before = valley.check(valley.move(EdgeRule::average)).folded_faces;
+  const MovedSurface moved = valley.move(EdgeRule::offset);
+  EXPECT_TRUE(moved.n_slid == 0 || valley.check(moved).folded_faces < before);
+}
+
+TEST(Unfolding, ConstraintsOfOtherNodesAreRefused) {
+  const Lifted valley(0.01);
+  const EdgeOptions options;
+  const Index none = valley.mesh.n_nodes();
+  for (const NodeConstraints& constraints :
+       {NodeConstraints{.fixed = {none}}, NodeConstraints{.sliding = {{none, Vec3::UnitX()}}},
+        NodeConstraints{.anchored = {none}}})
+    EXPECT_THROW(SurfaceMover(test::only(valley.surface), {&options, 1}, constraints), InputError);
+}

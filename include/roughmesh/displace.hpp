@@ -49,8 +49,11 @@ struct SlidingNode {
 
 /// What nodes of rough surfaces cannot do.
 struct NodeConstraints {
-  std::vector<Index> fixed = {};  ///< ascending; they stay, whatever surface they are of
-  std::vector<SlidingNode> sliding = {};
+  std::vector<Index> fixed = {};          ///< ascending; they stay, whatever surface they are of
+  std::vector<SlidingNode> sliding = {};  ///< ascending by node
+  /// Ascending. Where faces would fold they do not slide within a smooth piece of surface, as nodes
+  /// of faces that stay do not, or those of lines and points that are to keep their shape.
+  std::vector<Index> anchored = {};
 };
 
 /// Where the nodes of surfaces go.
@@ -66,8 +69,8 @@ struct MovedSurface {
 /// in the sense of least squares (eq. 36 and 55); what such nodes slide by along the surfaces is
 /// spread over the edges and faces beside them (eq. 56). Where faces would turn over, as beside
 /// edges that are much shorter than their heights, the nodes around them slide along the surface
-/// until none does, under the rule `offset` (eq. 68). Nodes at one point of a surface move
-/// together.
+/// until none does, as far as there is a way, under the rule `offset` (eq. 68). Nodes at one point
+/// of a surface move together.
 class SurfaceMover {
  public:
   /// @param surfaces  one or more of one mesh, of one dimension; kept by reference

@@ -46,8 +46,7 @@ struct Walls {
 Walls find_walls(const Mesh& mesh, std::span<const Surface> surfaces,
                  const WallOptions& options = {});
 
-/// Of the walls, what concerns nodes of the surfaces. None where no height would lead off a wall:
-/// then SurfaceMover need not know of them.
+/// Of the walls, what concerns nodes of the surfaces.
 std::vector<SlidingNode> sliding_on_surfaces(const Walls& walls, std::span<const Surface> surfaces);
 
 }  // namespace roughmesh
