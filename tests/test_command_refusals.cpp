@@ -101,7 +101,7 @@ TEST_F(CommandRefusals, SaysWhatCannotBeMeshedAnew) {
   const std::string remesh = " --volume remesh ";
   write_mesh(test::ring(24), folder / "ring.msh");
   for (const auto& [input, arguments, reason] : std::vector<std::array<std::string, 3>>{
-           {"sphere.msh", "-o a.msh --box 2", "--box: 2; without --volume remesh"},
+           {"sphere.msh", "-o a.msh --box 2", "--box: 2; the space up to the box"},
            {"sphere.msh", "-o a.msh --box 1" + remesh, "--box: 1; must be above 1"},
            {"ball.msh --group surface", "-o a.msh --box 2" + remesh,
             "--box: 2; the mesh has volumes"},
