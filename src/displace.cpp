@@ -137,8 +137,11 @@ struct SurfaceMover::Plan {
 SurfaceMover::SurfaceMover(std::span<const Surface> surfaces, std::span<const EdgeOptions> options,
                            const NodeConstraints& constraints) {
   check_options(surfaces, options);
-  auto plan = std::make_unique<Plan>(surfaces, std::vector(options.begin(), options.end()),
-                                     constraints, moved_nodes(surfaces));
+  auto plan = std::make_unique<Plan>();
+  plan->surfaces = surfaces;
+  plan->options.assign(options.begin(), options.end());
+  plan->constraints = constraints;
+  plan->nodes = moved_nodes(surfaces);
   require_of_surfaces(constraints, plan->nodes);
   plan->has_edges = !has_no_edges(surfaces, options, constraints);
   if (plan->has_edges)
