@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 #include <tuple>
 
 #include "morton.hpp"
@@ -117,7 +116,17 @@ std::size_t SortedPlaces::position(std::uint32_t number, const Vec3& place) cons
     return std::tie(codes_[i], x[0], x[1], x[2], order_[i]) <
            std::tie(cell, place[0], place[1], place[2], number);
   };
-  return *std::ranges::partition_point(std::views::iota(std::size_t{0}, size()), is_before);
+  std::size_t first = 0;
+  for (std::size_t n = size(); n > 0;) {  // of those from `first` on, some may come before
+    const std::size_t half = n / 2;
+    if (is_before(first + half)) {
+      first += half + 1;
+      n -= half + 1;
+    } else {
+      n = half;
+    }
+  }
+  return first;
 }
 
 int SortedPlaces::n_doublings(double edge) const {
