@@ -30,7 +30,7 @@ FULL = {
     "realizations": (200, 50),  # of the measured errors, up to 10^4 points and above
     "divisions": (408, 1291),   # of the spheres that the whole command roughens: 6 d^2 + 2 nodes
     "programs": ("bench_gather", "bench_noise", "bench_cholesky", "bench_paper_example",
-                 "bench_read_msh", "bench_read_surface", "bench_move_volume"),
+                 "bench_read_msh", "bench_read_surface", "bench_move_volume", "bench_self_intersection"),
 }
 QUICK = {
     "families": COMPARED,
